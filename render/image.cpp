@@ -6,8 +6,8 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/formats/picture_codecs.h"
-#include "mesh_ops/formats/png_writer.h"
+#include "mesh_ops/formats/images/picture_codecs.h"
+#include "mesh_ops/formats/images/png_writer.h"
 
 namespace rebake {
 

@@ -17,7 +17,7 @@ using Action = std::function<void(Session&)>;
 
 /// Description of one kind of action; table.cpp lists all. Actions write files, or undo and redo edits, and are not
 /// steps of history themselves. Each kind is a struct in its own file, described there by REBAKE_DESCRIBE_ACTION
-/// (describe.h).
+/// (describe_action.h).
 struct ActionType {
   const char* op;                      ///< name in scripts
   const char* help;                    ///< one sentence

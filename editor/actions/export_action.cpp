@@ -1,6 +1,6 @@
 #include "editor/actions/export_action.h"
 
-#include "editor/actions/describe.h"
+#include "editor/actions/describe_action.h"
 #include "editor/actions/lit.h"
 #include "editor/actions/plain_scene.h"
 #include "editor/actions/views.h"
@@ -19,7 +19,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/formats.h"
-#include "mesh_ops/formats/rgba_png.h"
+#include "mesh_ops/formats/images/rgba_png.h"
 #include "render/compare.h"
 #include "render/picture.h"
 
@@ -206,13 +206,15 @@ void run(Session& session, const ExportAction& action) {
   const Scene scene = with_only(session.scene(), action.nodes);
   if (action.plain) return export_plain(session, scene, action);
   check_not_plain(action);
+  const Format& format = format_named(action.format);
   const ExportReport report =
-      format_named(action.format)
-          .write(scene, action.out, {action.layout, session.document.sources(), action.page_size}, session.progress);
+      format.write(scene, action.out, {action.layout, session.document.sources(), action.page_size}, session.progress);
   session.wrote_scene(action.out, true);
   for (const std::string& note : report.notes) session.say("note: " + note);
-  if (!report.preserves_scene) report_losses(session, scene, action, report);
-  if (action.format == "mobilenerf") report_lost_light(session, scene);
+  if (!report.preserves_scene && format.has_colors) {
+    report_losses(session, scene, action, report);
+    report_lost_light(session, scene);
+  }
   session.say(fmt::format("exported {}", action.out));
 }
 
@@ -221,7 +223,7 @@ REBAKE_DESCRIBE_ACTION(
     "Exports the scene in the MobileNeRF format (as scene.json if one folder is not exact) or another format.",
     (auto& action, auto& visit) {
       visit("out", action.out, Need::required, "folder to write");
-      visit("format", action.format, Need::optional, "mobilenerf: for the published viewers; rebake: keeps every node");
+      visit("format", action.format, Need::optional, written_formats_help());
       visit("layout", action.layout, Need::optional, "layout of the output; default: as read");
       visit("page_size", action.page_size, Need::optional,
             "maximum side of repacked textures in texels, 1 to 16384; larger textures are repacked too; if left "

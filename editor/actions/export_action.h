@@ -3,7 +3,7 @@
 #include "editor/actions/action.h"
 #include "editor/actions/session.h"
 #include "editor/fields/values.h"
-#include "mesh_ops/features/fuse.h"
+#include "mesh_ops/features/distill/fuse.h"
 
 namespace rebake {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/features/fuse.h"
+#include "mesh_ops/features/distill/fuse.h"
 #include "render/picture.h"
 
 namespace rebake {

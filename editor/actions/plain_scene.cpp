@@ -8,7 +8,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/export.h"
-#include "mesh_ops/formats/write_baked_folder.h"
+#include "mesh_ops/formats/mobilenerf/write_baked_folder.h"
 
 namespace rebake {
 

@@ -4,7 +4,7 @@
 
 #include "editor/actions/plain_report.h"
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/features/fuse.h"
+#include "mesh_ops/features/distill/fuse.h"
 
 namespace rebake {
 

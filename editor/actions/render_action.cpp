@@ -1,6 +1,6 @@
 #include "editor/actions/render_action.h"
 
-#include "editor/actions/describe.h"
+#include "editor/actions/describe_action.h"
 #include "editor/actions/lit.h"
 #include "editor/actions/views.h"
 #include "editor/edits/support.h"

@@ -1,6 +1,6 @@
 #include "editor/actions/save.h"
 
-#include "editor/actions/describe.h"
+#include "editor/actions/describe_action.h"
 
 #include <fmt/format.h>
 

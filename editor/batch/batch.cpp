@@ -287,12 +287,11 @@ BatchScenes batch_scenes(const BatchOptions& options) {
   BatchScenes result;
   result.protected_paths = guarded_by(options, by_name);
   SourceGuard sources;
-  for (const auto& [reader, path] : result.protected_paths) sources.add_input(path);
+  for (const auto& [reader, path] : result.protected_paths) protect_input(sources, path);
   for (const fs::path& kept : {state_folder(options), state_folder(options) / "claims"}) sources.check_file(kept);
-  for (const char* scene : {"mlp.json", "scene.json"})
-    if (fs::exists(options.out / scene))
-      throw FieldError("--out",
-                       fmt::format("{} is a scene; choose another folder for the results", options.out.string()));
+  if (format_at(options.out) != nullptr)
+    throw FieldError("--out",
+                     fmt::format("{} is a scene; choose another folder for the results", options.out.string()));
   if (const fs::path script = fs::weakly_canonical(options.script), state = fs::weakly_canonical(state_folder(options));
       std::mismatch(state.begin(), state.end(), script.begin(), script.end()).first == state.end())
     throw FieldError("script",
@@ -309,100 +308,142 @@ BatchScenes batch_scenes(const BatchOptions& options) {
   return result;
 }
 
-std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
-                                   const std::function<void(const BatchResult&)>& ended) {
-  const std::uint64_t program = content_hash(read_file(options.program)),
-                      script = content_hash(read_file(options.script));
-  const auto [scenes, protected_paths] = batch_scenes(options);
-  std::error_code error;
-  fs::create_directories(state_folder(options), error);
-  if (error) throw FileError(options.out, "cannot be created: " + error.message());
-  Processes running;
-  std::vector<BatchResult> results(scenes.size());
-  // No script may overwrite another scene or an input of another script.
-  std::string list;
-  for (const auto& [reader, path] : protected_paths) list += reader + '\0' + path.string() + '\0';
-  // A unique name, since another batch with the same output folder has other scenes.
-  const fs::path sources =
-      state_folder(options) / fmt::format("sources-{}-of-{}-{}", options.shard, options.shards, ::getpid());
-  write_file_atomically(sources, list, {});
-  const std::shared_ptr<void> cleanup(nullptr, [&](void*) {
+namespace {
+
+// Runs the scenes of one shard, several at a time, as processes of their own.
+class BatchRun {
+ public:
+  BatchRun(const BatchOptions& options, const Progress& progress, const std::function<void(const BatchResult&)>& ended)
+      : options_(options),
+        progress_(progress),
+        ended_(ended),
+        program_(content_hash(read_file(options.program))),
+        script_(content_hash(read_file(options.script))) {
+    BatchScenes found = batch_scenes(options);
+    scenes_ = std::move(found.shard_scenes);
+    results_.resize(scenes_.size());
+    std::error_code error;
+    fs::create_directories(state_folder(options), error);
+    if (error) throw FileError(options.out, "cannot be created: " + error.message());
+    // No script may overwrite another scene or an input of another script.
+    std::string list;
+    for (const auto& [reader, path] : found.protected_paths) list += reader + '\0' + path.string() + '\0';
+    // A unique name, since another batch with the same output folder has other scenes.
+    sources_ = state_folder(options) / fmt::format("sources-{}-of-{}-{}", options.shard, options.shards, ::getpid());
+    write_file_atomically(sources_, list, {});
+    claims_.emplace(state_folder(options) / "claims");
+  }
+  ~BatchRun() {
     std::error_code ignored;
-    fs::remove(sources, ignored);
-  });
-  const Claims claims(state_folder(options) / "claims");
-  std::size_t next = 0, over = 0;
-  // Also throws Cancelled on cancellation.
-  const auto report = [&](std::size_t more) {
-    over += more;
-    progress.at(fmt::format("{} of {} scenes", over, scenes.size()),
-                static_cast<double>(over) / static_cast<double>(scenes.size()));
-  };
-  const auto finish = [&](std::size_t k) {
-    ended(results[k]);
-    report(1);
-  };
-  while (over < scenes.size()) {
-    while (next < scenes.size() && running.size() < static_cast<std::size_t>(options.jobs)) {
-      const std::size_t k = next++;
-      BatchResult& result = results[k];
-      result.scene = scenes[k];
-      result.name = folder_title(scenes[k]);
-      const fs::path mark = state_folder(options) / (result.name + ".done");
-      bool started = false;
-      try {
-        const std::string key = key_of(options, program, script, scenes[k]);
-        const Mark before = read_mark(mark);
-        if (options.resume && is_up_to_date(before, key)) {
-          result.status = BatchResult::Status::skipped;
-          set_quality_message(result, before.below_requested_psnr);
-        } else {
-          for (const Mark::File& output : before.wrote) claims.release(output.path, result.name);
-          fs::remove(mark);
-          // Remove these names first: if they are links, their targets must not be overwritten.
-          for (const char* ending : {".log", ".files"}) fs::remove(state_folder(options) / (result.name + ending));
-          running.add(start(options, scenes[k], state_folder(options) / (result.name + ".log"),
-                            state_folder(options) / (result.name + ".files"), sources),
-                      {k, key, Clock::now()});
-          started = true;
-        }
-      } catch (const FileError& why) {
-        result.message = why.what();
+    fs::remove(sources_, ignored);
+  }
+  BatchRun(const BatchRun&) = delete;
+  BatchRun& operator=(const BatchRun&) = delete;
+
+  std::vector<BatchResult> run() {
+    std::size_t next = 0;
+    while (over_ < scenes_.size()) {
+      while (next < scenes_.size() && running_.size() < static_cast<std::size_t>(options_.jobs)) {
+        const std::size_t k = next++;
+        // An error of the report ends the batch and is not a failure of the scene.
+        if (!begin(k)) finish(k);
       }
-      // Outside the try block: an error of the report ends the batch and is not a failure of the scene.
-      if (!started) finish(k);
+      if (running_.size() == 0) continue;
+      int status = 0;
+      const auto job = running_.wait(status);
+      if (!job) {
+        report(0);
+        continue;
+      }
+      take_result(*job, status);
+      finish(job->scene);
     }
-    if (running.size() == 0) continue;
-    int status = 0;
-    const auto ended_job = running.wait(status);
-    if (!ended_job) {
-      report(0);
-      continue;
+    return std::move(results_);
+  }
+
+ private:
+  fs::path state_file(const BatchResult& result, const char* ending) const {
+    return state_folder(options_) / (result.name + ending);
+  }
+
+  // Starts a scene. Returns false if it needs no run or cannot be started.
+  bool begin(std::size_t k) {
+    BatchResult& result = results_[k];
+    result.scene = scenes_[k];
+    result.name = folder_title(scenes_[k]);
+    const fs::path mark = state_file(result, ".done");
+    try {
+      const std::string key = key_of(options_, program_, script_, scenes_[k]);
+      const Mark before = read_mark(mark);
+      if (options_.resume && is_up_to_date(before, key)) {
+        result.status = BatchResult::Status::skipped;
+        set_quality_message(result, before.below_requested_psnr);
+        return false;
+      }
+      for (const Mark::File& output : before.wrote) claims_->release(output.path, result.name);
+      fs::remove(mark);
+      // Remove these names first: if they are links, their targets must not be overwritten.
+      for (const char* ending : {".log", ".files"}) fs::remove(state_file(result, ending));
+      running_.add(start(options_, scenes_[k], state_file(result, ".log"), state_file(result, ".files"), sources_),
+                   {k, key, Clock::now()});
+      return true;
+    } catch (const FileError& why) {
+      result.message = why.what();
+      return false;
     }
-    const Processes::Job& job = *ended_job;
-    BatchResult& result = results[job.scene];
+  }
+
+  void take_result(const Processes::Job& job, int status) {
+    BatchResult& result = results_[job.scene];
     result.seconds = std::chrono::duration<double>(Clock::now() - job.since).count();
     // Exit code 4: done, but an export missed the PSNR that the script requires.
     const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
-    if (below || (WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
-      set_quality_message(result, below);
-      const std::string files = read_file(state_folder(options) / (result.name + ".files"));
-      result.status = BatchResult::Status::done;
-      for (const Mark::File& output : mark_from(files).wrote)
-        if (const std::string other = claims.claim(output.path, result.name); !other.empty()) {
-          result.status = BatchResult::Status::failed;
-          result.message = fmt::format("{} is also written for {}; put {{name}} into the output path in the script",
-                                       output.path, other);
-        }
-      if (result.status == BatchResult::Status::done)
-        write_file_atomically(state_folder(options) / (result.name + ".done"),
-                              json{{"key", job.key}, {"below_asked", below}}.dump() + '\n' + files, {});
-    } else {
-      result.message = last_error(state_folder(options) / (result.name + ".log"), status);
+    if (!below && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
+      result.message = last_error(state_file(result, ".log"), status);
+      return;
     }
-    finish(job.scene);
+    set_quality_message(result, below);
+    const std::string files = read_file(state_file(result, ".files"));
+    result.status = BatchResult::Status::done;
+    for (const Mark::File& output : mark_from(files).wrote)
+      if (const std::string other = claims_->claim(output.path, result.name); !other.empty()) {
+        result.status = BatchResult::Status::failed;
+        result.message = fmt::format("{} is also written for {}; put {{name}} into the output path in the script",
+                                     output.path, other);
+      }
+    if (result.status == BatchResult::Status::done)
+      write_file_atomically(state_file(result, ".done"),
+                            json{{"key", job.key}, {"below_asked", below}}.dump() + '\n' + files, {});
   }
-  return results;
+
+  // Also throws Cancelled on cancellation.
+  void report(std::size_t more) {
+    over_ += more;
+    progress_.at(fmt::format("{} of {} scenes", over_, scenes_.size()),
+                 static_cast<double>(over_) / static_cast<double>(scenes_.size()));
+  }
+  void finish(std::size_t k) {
+    ended_(results_[k]);
+    report(1);
+  }
+
+  const BatchOptions& options_;
+  const Progress& progress_;
+  const std::function<void(const BatchResult&)>& ended_;
+  std::uint64_t program_, script_;  // hashes of the files
+  std::vector<fs::path> scenes_;
+  std::vector<BatchResult> results_;
+  fs::path sources_;  // list of protected paths
+  std::optional<Claims> claims_;
+  std::size_t over_ = 0;
+  Processes running_;  // ended first
+};
+
+}  // namespace
+
+std::vector<BatchResult> run_batch(const BatchOptions& options, const Progress& progress,
+                                   const std::function<void(const BatchResult&)>& ended) {
+  return BatchRun(options, progress, ended).run();
 }
 
 }  // namespace rebake

@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "editor/cli/subcommands.h"
-#include "editor/gui/window/editor_window.h"
+#include "editor/gui/app/editor_window.h"
 
 namespace rebake {
 

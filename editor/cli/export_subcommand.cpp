@@ -12,6 +12,7 @@
 #include "editor/cli/terminal.h"
 #include "editor/fields/codec.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
@@ -36,7 +37,10 @@ void describe_export(SubcommandDescription& command) {
       .option("--page-size", options->page_size, "maximum side of repacked textures, in texels",
               "N [4096, or that of the largest source texture]")
       .between(1, 16384);
-  command.option("--format", options->format, "output format", "mobilenerf|rebake [mobilenerf]");
+  command
+      .option("--format", options->format, written_formats_help(),
+              fmt::format("{} [{}]", fmt::join(written_formats(), "|"), ExportAction().format))
+      .one_of(written_formats());
   command.flag("--plain", options->plain,
                "write one folder for any scene; fits one decoder if none represents the scene exactly");
   command.option("--width", options->width, "plain: maximum width of the decoder's hidden layers",

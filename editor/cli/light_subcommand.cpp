@@ -17,7 +17,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/light/lighting.h"
-#include "mesh_ops/light/transfer_model.h"
+#include "mesh_ops/light/train_transfer_model.h"
 
 namespace rebake {
 

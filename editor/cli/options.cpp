@@ -14,7 +14,7 @@
 #include "editor/fields/codec.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/formats/camera_json.h"
+#include "mesh_ops/formats/cameras/camera_json.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_files.h"
 
@@ -70,7 +70,7 @@ LoadedScene load_scenes(const std::vector<std::string>& folders, const std::stri
       opened.sources.add_file(folder, "the project that is open");
     } else {
       read = read_any(folder, axes_of(axes), progress);
-      opened.sources.add(scene_folder_of(folder));
+      protect_input(opened.sources, folder);
     }
     add_sources(opened.sources, read);
     for (const std::string& assumption : assumptions_of(read))

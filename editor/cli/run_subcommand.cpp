@@ -60,8 +60,8 @@ std::string file_list(const Session& session, const std::string& script,
 void check_journal(const std::filesystem::path& journal, const std::string& scene, const std::string& script,
                    const std::map<std::string, std::string>& variables) {
   SourceGuard guard;
-  if (!scene.empty()) guard.add(scene);
-  for (const ScriptInput& input : script_inputs(script, variables)) guard.add_input(input.path);
+  if (!scene.empty()) protect_scene(guard, scene);
+  for (const ScriptInput& input : script_inputs(script, variables)) protect_input(guard, input.path);
   guard.check_file(journal);
 }
 
@@ -72,12 +72,11 @@ void protect_input_files(Document& document, const std::string& script,
                          const std::map<std::string, std::string>& variables) {
   for (const ScriptInput& input : script_inputs(script, variables)) {
     std::error_code error;
-    if (std::filesystem::is_regular_file(input.path, error) && input.path.filename() != "scene.json")
+    if (scene_root(input.path) == input.path && std::filesystem::is_regular_file(input.path, error))
       document.protect_file(input.path, "a file that this script reads");
     else if (input.content_known)
       document.protect_input(input.path, "a scene that this script reads");
-    else if (const std::filesystem::path folder = scene_folder_of(input.path);
-             std::filesystem::is_directory(folder, error))
+    else if (const std::filesystem::path folder = scene_root(input.path); std::filesystem::is_directory(folder, error))
       document.protect_contents(folder, "a scene that this script reads");
   }
 }
@@ -93,16 +92,87 @@ void protect_listed(Document& document, const std::filesystem::path& list, const
   document.protect_file(list, "a file of the running batch");
 }
 
+struct RunOptions {
+  std::string script, journal, scene, out, files, sources;
+  std::vector<std::string> variables;
+  bool fields = false;
+  int threads = 0, parent = 0;
+};
+
+// The values of --var. Throws FieldError.
+std::map<std::string, std::string> variables_of(const RunOptions& options) {
+  std::map<std::string, std::string> variables;
+  for (const std::string& pair : options.variables) {
+    const std::size_t equals = pair.find('=');
+    if (equals == std::string::npos || equals == 0) throw FieldError("--var", "\"" + pair + "\" must be name=value");
+    variables[pair.substr(0, equals)] = pair.substr(equals + 1);
+  }
+  return variables;
+}
+
+// Runs the script, exports and lists files as the options say.
+void run_lines(Session& session, const RunOptions& options, const std::string& script,
+               const std::map<std::string, std::string>& variables) {
+  try {
+    run_script(session, script, options.script, variables);
+    if (!options.out.empty() && session.exports.empty()) {
+      ExportAction action;
+      action.out = options.out;
+      run(session, action);
+    }
+    if (!options.files.empty()) {
+      Journal::refuse_overwriting(options.files);
+      write_file_atomically(options.files, file_list(session, script, variables), session.document.sources());
+    }
+  } catch (const Error&) {
+    if (!options.journal.empty())
+      session.say(fmt::format("the edits so far are in {0}; to recover them: rebake recover {0} -o FILE.rebake",
+                              options.journal));
+    throw;
+  }
+}
+
+void run_with(const RunOptions& options) {
+  if (options.script.empty()) throw FieldError("script", "is missing: name a script to run");
+  if (options.parent != 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != options.parent) throw Error("the process that started this one has ended");
+  }
+  std::optional<tbb::global_control> threads;
+  if (options.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  std::map<std::string, std::string> variables = variables_of(options);
+  Session session;
+  session.progress = progress_bar();
+  session.say = print_message;
+  if (!options.sources.empty())
+    protect_listed(session.document, options.sources, options.scene.empty() ? "" : folder_title(options.scene));
+  const std::string script = read_input(options.script);
+  session.document.protect_file(options.script, "the script of this run");
+  if (!options.scene.empty()) {
+    variables["name"] = folder_title(options.scene);
+    variables["path"] = options.scene;
+  }
+  protect_input_files(session.document, script, variables);
+  if (!options.journal.empty()) {
+    check_journal(options.journal, options.scene, script, variables);
+    session.document.keep_journal(options.journal);
+  }
+  if (!options.scene.empty()) {
+    Import import;
+    import.path = options.scene;
+    import.as = "scene";
+    session.edit(import);
+  }
+  run_lines(session, options, script, variables);
+  session.document.discard_journal();
+  if (session.below_requested_psnr) throw ExitWith{4};
+}
+
 }  // namespace
 
 void describe_run(SubcommandDescription& command) {
-  struct Options {
-    std::string script, journal, scene, out, files, sources;
-    std::vector<std::string> variables;
-    bool fields = false;
-    int threads = 0, parent = 0;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   command.option("script", options->script, "script file; its relative paths start at the current folder",
                  "SCRIPT.jsonl");
   command.option("--var", options->variables, "replaces {name} in the script's strings", "name=value...");
@@ -128,61 +198,7 @@ void describe_run(SubcommandDescription& command) {
       fmt::print("{}", command_reference());
       return;
     }
-    if (options->script.empty()) throw FieldError("script", "is missing: name a script to run");
-    if (options->parent != 0) {
-      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-      if (::getppid() != options->parent) throw Error("the process that started this one has ended");
-    }
-    std::optional<tbb::global_control> threads;
-    if (options->threads > 0)
-      threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options->threads));
-    std::map<std::string, std::string> variables;
-    for (const std::string& pair : options->variables) {
-      const std::size_t equals = pair.find('=');
-      if (equals == std::string::npos || equals == 0) throw FieldError("--var", "\"" + pair + "\" must be name=value");
-      variables[pair.substr(0, equals)] = pair.substr(equals + 1);
-    }
-    Session session;
-    session.progress = progress_bar();
-    session.say = print_message;
-    if (!options->sources.empty())
-      protect_listed(session.document, options->sources, options->scene.empty() ? "" : folder_title(options->scene));
-    const std::string script = read_input(options->script);
-    session.document.protect_file(options->script, "the script of this run");
-    if (!options->scene.empty()) {
-      variables["name"] = folder_title(options->scene);
-      variables["path"] = options->scene;
-    }
-    protect_input_files(session.document, script, variables);
-    if (!options->journal.empty()) {
-      check_journal(options->journal, options->scene, script, variables);
-      session.document.keep_journal(options->journal);
-    }
-    if (!options->scene.empty()) {
-      Import import;
-      import.path = options->scene;
-      import.as = "scene";
-      session.edit(import);
-    }
-    try {
-      run_script(session, script, options->script, variables);
-      if (!options->out.empty() && session.exports.empty()) {
-        ExportAction action;
-        action.out = options->out;
-        run(session, action);
-      }
-      if (!options->files.empty()) {
-        Journal::refuse_overwriting(options->files);
-        write_file_atomically(options->files, file_list(session, script, variables), session.document.sources());
-      }
-    } catch (const Error&) {
-      if (!options->journal.empty())
-        session.say(fmt::format("the edits so far are in {0}; to recover them: rebake recover {0} -o FILE.rebake",
-                                options->journal));
-      throw;
-    }
-    session.document.discard_journal();
-    if (session.below_requested_psnr) throw ExitWith{4};
+    run_with(*options);
   });
 }
 

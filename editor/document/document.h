@@ -7,6 +7,7 @@
 #include "editor/document/history.h"
 #include "editor/document/journal.h"
 #include "editor/document/sources.h"
+#include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
 
@@ -33,13 +34,13 @@ class Document {
   /// Files that no output may overwrite: all imports (undone ones too), the origins of the scene's objects, the
   /// journal, and the inputs that were added below.
   SourceGuard sources() const;
-  /// Protects a folder or file from being overwritten: SourceGuard::add_input().
+  /// Protects a folder or file from being overwritten: protect_input() (scene_files.h).
   void protect_input(const std::filesystem::path& source, const std::string& role) {
-    imported_.add_input(source, role);
+    ::rebake::protect_input(imported_, source, role);
   }
-  /// Protects the files in a scene folder: SourceGuard::add_contents().
+  /// Protects the files in a scene folder: protect_scene_contents().
   void protect_contents(const std::filesystem::path& folder, const std::string& role) {
-    imported_.add_contents(folder, role);
+    protect_scene_contents(imported_, folder, role);
   }
   /// Ends protect_contents(), after the folder was replaced.
   void release_contents(const std::filesystem::path& folder) { imported_.release_contents(folder); }

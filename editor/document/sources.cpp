@@ -86,7 +86,7 @@ bool has_picture(const LightEdit& light) {
 
 std::uint64_t content_hash_at(const fs::path& path) {
   std::error_code error;
-  return fs::is_directory(scene_folder_of(path), error) ? folder_hash(path) : content_hash(read_file(path));
+  return fs::is_directory(scene_root(path), error) ? folder_hash(path) : content_hash(read_file(path));
 }
 
 std::optional<EditSource> source_of(const Edit& edit) {
@@ -127,7 +127,7 @@ Edit completed(const Edit& edit) {
   if (const auto* import = edit.as<Import>()) {
     Import whole = *import;
     whole.path = path;
-    whole.content = content(fs::is_directory(scene_folder_of(path), error));
+    whole.content = content(fs::is_directory(scene_root(path), error));
     return whole;
   }
   LightEdit whole = *edit.as<LightEdit>();
@@ -139,14 +139,14 @@ Edit completed(const Edit& edit) {
 void add_sources(SourceGuard& guard, const std::vector<Edit>& edits) {
   for (const Edit& edit : edits)
     if (const auto* import = edit.as<Import>())
-      guard.add(scene_folder_of(import->path));
+      protect_input(guard, import->path);
     else if (const auto source = source_of(edit))
       guard.add_file(source->path);
 }
 
 void add_sources(SourceGuard& guard, const Scene& scene) {
   for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->object && placed.node->object->origin) guard.add(placed.node->object->origin->folder);
+    if (placed.node->object && placed.node->object->origin) protect_scene(guard, placed.node->object->origin->folder);
 }
 
 }  // namespace rebake

@@ -29,12 +29,32 @@ struct Outcome {
   Outcome(Scene made, Report said) : scene(std::move(made)), report(std::move(said)) {}
 };
 
+/// A field of an edit that can be adjusted after the edit, and the form of its value: `factor` a number near 1, `turn`
+/// a rotation, `factors` a scale per axis.
+struct AdjustableField {
+  enum class Kind { number, length, degrees, factor, point, factors, turn };
+  const char* field;
+  const char* label;
+  Kind kind;
+};
+
 /// Type-erased description of one kind of edit; table.cpp lists all. Each kind is a struct in its own file, described
-/// there by REBAKE_DESCRIBE_EDIT (describe.h), the only place that names its fields.
+/// there by REBAKE_DESCRIBE_EDIT (describe_edit.h), the only place that names its fields.
 struct EditType {
   const char* op;    ///< name in scripts, journals and Python
   const char* help;  ///< one sentence
   bool selects;      ///< changes nothing but the selection
+
+  // For the window. Structs state them as static members of the same names, or by functions.
+  bool needs_selection;  ///< without selected triangles it does nothing
+  bool makes_nodes;      ///< adds nodes, which are then picked
+  bool deforms;          ///< deforms triangles, which its title counts
+  std::span<const AdjustableField> adjustable;
+  /// The past tense for titles of steps ("Hid", "Bent by 20°:"): a function done_words(edit), else T::done, else from
+  /// `op`.
+  std::string (*done)(const void* edit);
+  /// The title of a step with this edit: a function whole_title(edit). Empty: the title is `done` and what changed.
+  std::string (*title)(const void* edit);
 
   std::vector<FieldInfo> (*fields)();  ///< names, types, defaults and help
   /// The functions below as read_edit(), to_json() and apply(); `edit` points to the struct.

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "editor/fields/values.h"
-#include "mesh_ops/features/fuse_method.h"
+#include "mesh_ops/features/distill/fuse_method.h"
 
 namespace rebake {
 
@@ -56,6 +56,7 @@ REBAKE_CODEC(Scale);
 REBAKE_CODEC(BoxRegion);
 REBAKE_CODEC(SphereRegion);
 REBAKE_CODEC(HalfSpaceRegion);
+REBAKE_CODEC(AxisDirection);
 REBAKE_CODEC(PolyLine);
 REBAKE_CODEC(PixelPolygon);
 REBAKE_CODEC(BrushStroke);

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "mesh_ops/base/elementary.h"
-#include "mesh_ops/formats/camera_json.h"
+#include "mesh_ops/formats/cameras/camera_json.h"
 
 namespace rebake {
 
@@ -208,6 +208,20 @@ json Codec<PolyLine>::write(const PolyLine& value) {
   json points = json::array();
   for (const Vec3& point : value.points) points.push_back(Codec<Vec3>::write(point));
   return points;
+}
+
+FieldType Codec<AxisDirection>::type() {
+  return {FieldKind::other, "[x, y, z] or \"auto\"", "Vector | Literal[\"auto\"]", {}};
+}
+AxisDirection Codec<AxisDirection>::read(const json& value, const Scene&) {
+  AxisDirection axis;
+  axis.automatic = value == "auto";
+  if (value.is_string() && !axis.automatic) throw Error("must be [x, y, z] or \"auto\"");
+  if (!axis.automatic) axis.direction = vector(value);
+  return axis;
+}
+json Codec<AxisDirection>::write(const AxisDirection& value) {
+  return value.automatic ? json("auto") : list(value.direction);
 }
 
 FieldType Codec<PixelPolygon>::type() {

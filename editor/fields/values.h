@@ -77,4 +77,13 @@ enum class Need { required, optional };
 /// length: scene units; object_length: units of the object's own space; share: 0 … 1; factor: a ratio.
 enum class Unit { none, degrees, length, object_length, pixels, share, factor };
 
+/// Direction of a deformation's axis: given, or found from the triangles.
+struct AxisDirection {
+  AxisDirection() = default;
+  AxisDirection(const Vec3& given) : direction(given) {}
+  Vec3 direction{0, 1, 0};  ///< any length but 0; unused if automatic
+  bool automatic = false;
+  bool operator==(const AxisDirection&) const = default;
+};
+
 }  // namespace rebake

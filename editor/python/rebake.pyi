@@ -435,7 +435,7 @@ class Document:
         fixed: cage vertices that stay fixed
         iterations: maximum number, 1 to 1000; stops earlier if no vertex moves by more than a millionth of the cage's size
         """
-    def bend(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None, direction: Vector = [1.0,0.0,0.0]) -> None:
+    def bend(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector | Literal["auto"] = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None, direction: Vector = [1.0,0.0,0.0]) -> None:
         """Bends triangles so that the axis becomes an arc of the same length; parts beyond the limits move rigidly.
 
         node: node to deform, with its children; default: all with selected triangles
@@ -444,14 +444,14 @@ class Document:
         frame: coordinates of the box: world; node: object space; bounds: relative to the object's box, 0 to 1
         falloff: width of the soft border towards undeformed triangles; 0: hard (scene units)
         degrees: angle between both limits (degrees)
-        axis: direction of the axis in world space
+        axis: direction of the axis in world space; auto: along the part, from where it is attached, following its centre line (tapers: straight); origin and spine must then be left out
         origin: world point on the axis; default: the axis runs through the middle of the triangles' box, from its lower end
         spine: world points of a curved axis; the straight axis then only defines the plane of the bend; from and to are arc lengths along the curve; not for tapers
         from_: lower limit along the axis, from the origin; default: lower end of the triangles (scene units)
         to: upper limit; default: upper end of the triangles (scene units)
-        direction: direction of the bend; only its part orthogonal to the axis counts
+        direction: direction of the bend; only its part orthogonal to the axis counts; if it is nearly parallel to an automatic axis, the world axis most across that is taken
         """
-    def twist(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
+    def twist(self, *, degrees: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector | Literal["auto"] = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
         """Twists triangles about an axis, with an angle that grows between the limits.
 
         node: node to deform, with its children; default: all with selected triangles
@@ -460,13 +460,13 @@ class Document:
         frame: coordinates of the box: world; node: object space; bounds: relative to the object's box, 0 to 1
         falloff: width of the soft border towards undeformed triangles; 0: hard (scene units)
         degrees: angle between both limits (degrees)
-        axis: direction of the axis in world space
+        axis: direction of the axis in world space; auto: along the part, from where it is attached, following its centre line (tapers: straight); origin and spine must then be left out
         origin: world point on the axis; default: the axis runs through the middle of the triangles' box, from its lower end
         spine: world points of a curved axis; the straight axis then only defines the plane of the bend; from and to are arc lengths along the curve; not for tapers
         from_: lower limit along the axis, from the origin; default: lower end of the triangles (scene units)
         to: upper limit; default: upper end of the triangles (scene units)
         """
-    def taper(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
+    def taper(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector | Literal["auto"] = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
         """Tapers triangles: scales them orthogonally to an axis, increasingly between the limits.
 
         node: node to deform, with its children; default: all with selected triangles
@@ -475,13 +475,13 @@ class Document:
         frame: coordinates of the box: world; node: object space; bounds: relative to the object's box, 0 to 1
         falloff: width of the soft border towards undeformed triangles; 0: hard (scene units)
         factor: size at the upper limit, relative to the present one (factor)
-        axis: direction of the axis in world space
+        axis: direction of the axis in world space; auto: along the part, from where it is attached, following its centre line (tapers: straight); origin and spine must then be left out
         origin: world point on the axis; default: the axis runs through the middle of the triangles' box, from its lower end
         spine: world points of a curved axis; the straight axis then only defines the plane of the bend; from and to are arc lengths along the curve; not for tapers
         from_: lower limit along the axis, from the origin; default: lower end of the triangles (scene units)
         to: upper limit; default: upper end of the triangles (scene units)
         """
-    def stretch(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
+    def stretch(self, *, factor: float, node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector | Literal["auto"] = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None) -> None:
         """Stretches triangles along an axis between the limits.
 
         node: node to deform, with its children; default: all with selected triangles
@@ -490,7 +490,7 @@ class Document:
         frame: coordinates of the box: world; node: object space; bounds: relative to the object's box, 0 to 1
         falloff: width of the soft border towards undeformed triangles; 0: hard (scene units)
         factor: new length between the limits, relative to the present one (factor)
-        axis: direction of the axis in world space
+        axis: direction of the axis in world space; auto: along the part, from where it is attached, following its centre line (tapers: straight); origin and spine must then be left out
         origin: world point on the axis; default: the axis runs through the middle of the triangles' box, from its lower end
         spine: world points of a curved axis; the straight axis then only defines the plane of the bend; from and to are arc lengths along the curve; not for tapers
         from_: lower limit along the axis, from the origin; default: lower end of the triangles (scene units)

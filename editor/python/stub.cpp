@@ -6,6 +6,7 @@
 
 #include "editor/edits/edit.h"
 #include "editor/fields/field_info.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
@@ -132,7 +133,7 @@ class Document:
     def save(self, path: str | PathLike[str]) -> None:
         """Writes a project (.rebake), or a scene folder with all nodes."""
     def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None,
-               format: Literal["mobilenerf", "rebake"] = "mobilenerf", plain: bool = False,
+               format: Literal[FORMATS] = "mobilenerf", plain: bool = False,
                width: int | Literal["auto"] = "auto",
                way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto",
                psnr: float | None = None, seconds: float = 0, report: str | PathLike[str] = "") -> list[str]:
@@ -174,6 +175,9 @@ std::string method(const EditType& edit, const char* last = nullptr) {
 
 std::string python_stub() {
   std::string out = head;
+  // The formats of the table, so that the text needs no change for a new one.
+  const std::string_view place = "FORMATS";
+  out.replace(out.find(place), place.size(), fmt::format("\"{}\"", fmt::join(written_formats(), "\", \"")));
   for (const EditType* type : edit_types()) out += method(*type);
   return out;
 }

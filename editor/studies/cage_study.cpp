@@ -7,7 +7,7 @@
 #include "editor/studies/deforming.h"
 #include "editor/studies/hard_points.h"
 #include "editor/studies/study.h"
-#include "mesh_ops/deform/cage_deformation.h"
+#include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 
 namespace rebake {
 

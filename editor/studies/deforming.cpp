@@ -3,7 +3,7 @@
 #include <map>
 
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/deform/closed_form.h"
+#include "mesh_ops/deform/bends/closed_form.h"
 #include "mesh_ops/index/index.h"
 
 namespace rebake {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh_ops/deform/wrap.h"
+#include "mesh_ops/deform/cages/wrap.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {

@@ -1,9 +1,9 @@
 #include "editor/studies/gradient_binding.h"
 
 #include "mesh_ops/base/polar.h"
-#include "mesh_ops/deform/cage_deformation.h"
-#include "mesh_ops/deform/point_blocks.h"
-#include "mesh_ops/deform/row_sums.h"
+#include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
+#include "mesh_ops/deform/cage_coordinates/point_blocks.h"
+#include "mesh_ops/deform/cage_coordinates/row_sums.h"
 
 namespace rebake {
 

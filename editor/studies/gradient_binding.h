@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh_ops/deform/coordinates.h"
+#include "mesh_ops/deform/cage_coordinates/coordinates.h"
 
 namespace rebake {
 

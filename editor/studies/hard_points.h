@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh_ops/deform/cage.h"
+#include "mesh_ops/deform/cages/cage.h"
 
 namespace rebake {
 

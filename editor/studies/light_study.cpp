@@ -10,9 +10,9 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/numbering.h"
-#include "mesh_ops/light/cached_light.h"
-#include "mesh_ops/light/light_estimate.h"
-#include "mesh_ops/light/relighting.h"
+#include "mesh_ops/light/estimate/light_estimate.h"
+#include "mesh_ops/light/relight/cached_light.h"
+#include "mesh_ops/light/relight/relighting.h"
 
 namespace rebake {
 

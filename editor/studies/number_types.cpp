@@ -1,4 +1,4 @@
-#include "mesh_ops/deform/point_weights.h"
+#include "mesh_ops/deform/cage_coordinates/point_weights.h"
 
 namespace rebake {
 

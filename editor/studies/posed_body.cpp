@@ -6,11 +6,11 @@
 
 #include "editor/studies/deforming.h"
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/deform/cage_deformation.h"
-#include "mesh_ops/deform/closed_form.h"
-#include "mesh_ops/deform/wrap.h"
-#include "mesh_ops/light/body_image.h"
-#include "mesh_ops/light/cached_light.h"
+#include "mesh_ops/deform/bends/closed_form.h"
+#include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
+#include "mesh_ops/deform/cages/wrap.h"
+#include "mesh_ops/light/learned/body_image.h"
+#include "mesh_ops/light/relight/cached_light.h"
 
 namespace rebake {
 

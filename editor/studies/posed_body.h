@@ -4,9 +4,9 @@
 #include <functional>
 #include <string>
 
-#include "mesh_ops/deform/coordinates.h"
-#include "mesh_ops/light/geometry_image.h"
-#include "mesh_ops/light/transfer.h"
+#include "mesh_ops/deform/cage_coordinates/coordinates.h"
+#include "mesh_ops/light/learned/geometry_image.h"
+#include "mesh_ops/light/transport/transfer.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {

@@ -6,8 +6,8 @@
 
 #include "editor/actions/plain_scene.h"
 #include "editor/studies/study.h"
-#include "mesh_ops/formats/feature_png.h"
-#include "mesh_ops/formats/obj.h"
+#include "mesh_ops/formats/mobilenerf/feature_png.h"
+#include "mesh_ops/formats/mobilenerf/obj.h"
 
 namespace rebake {
 

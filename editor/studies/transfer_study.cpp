@@ -5,10 +5,10 @@
 
 #include "editor/studies/posed_body.h"
 #include "editor/studies/study.h"
-#include "mesh_ops/light/cached_light.h"
-#include "mesh_ops/light/learnt_transfer.h"
-#include "mesh_ops/light/rotated_product.h"
-#include "mesh_ops/light/unet_transfer.h"
+#include "mesh_ops/light/learned/learnt_transfer.h"
+#include "mesh_ops/light/learned/unet_transfer.h"
+#include "mesh_ops/light/relight/cached_light.h"
+#include "mesh_ops/light/transport/rotated_product.h"
 
 namespace rebake {
 

@@ -69,23 +69,17 @@ bool SourceGuard::is_same(const Source& source, const fs::path& path) {
   return !there.empty() && (was_seen(source, there) || there == identity_of(source.path));
 }
 
-void SourceGuard::add(const fs::path& source) {
-  std::error_code error;
-  const bool file = fs::is_regular_file(source, error) || source.filename() == "scene.json";
-  add_folder(plain_path(file ? fs::absolute(source).parent_path() : source), "a source of this scene");
+void SourceGuard::add(const fs::path& folder, IsScene is_scene) {
+  add_folder(plain_path(folder), "a source of this scene", is_scene);
 }
 
-void SourceGuard::add_folder(const fs::path& folder, const std::string& role, const fs::path& owner) {
+void SourceGuard::add_folder(const fs::path& folder, const std::string& role, IsScene is_scene, const fs::path& owner) {
   // Many nodes share a source; its links are searched once.
-  if (add_source({folder, true, role, identity_of(folder), false, owner})) add_link_targets(folder, owner);
+  if (add_source({folder, true, role, identity_of(folder), false, owner})) add_link_targets(folder, is_scene, owner);
 }
 
-void SourceGuard::add_link_targets(const fs::path& folder, const fs::path& owner) {
+void SourceGuard::add_link_targets(const fs::path& folder, IsScene is_scene, const fs::path& owner) {
   const std::string linked = "the target of a link in a source of this scene";
-  const auto is_object = [](const fs::path& path) {
-    std::error_code ignored;
-    return fs::exists(path / "mlp.json", ignored);
-  };
   for_each_entry(folder, [&](const fs::directory_entry& entry) {
     std::error_code ignored;
     if (!entry.is_symlink(ignored)) return;
@@ -95,14 +89,15 @@ void SourceGuard::add_link_targets(const fs::path& folder, const fs::path& owner
       add_source({target, false, linked, identity_of(target), false, owner});
       return;
     }
-    // The scene reads a linked folder if it is an object, or contains objects.
-    if (is_object(target)) {
-      add_folder(target, linked, owner);
+    // The scene reads a linked folder if it is a scene, or contains some.
+    if (is_scene(target)) {
+      add_folder(target, linked, is_scene, owner);
       return;
     }
     for_each_entry(target, [&](const fs::directory_entry& below) {
       std::error_code error;
-      if (below.is_directory(error) && is_object(below.path())) add_folder(plain_path(below.path()), linked, owner);
+      if (below.is_directory(error) && is_scene(below.path()))
+        add_folder(plain_path(below.path()), linked, is_scene, owner);
     });
   });
 }
@@ -112,17 +107,9 @@ void SourceGuard::add_file(const fs::path& source, const std::string& role) {
   add_source({path, false, role, identity_of(path), false, {}});
 }
 
-void SourceGuard::add_input(const fs::path& source, const std::string& role) {
-  std::error_code error;
-  if (fs::is_regular_file(source, error) && source.filename() != "scene.json")
-    add_file(source, role);
-  else
-    add(source);
-}
-
-void SourceGuard::add_contents(const fs::path& folder, const std::string& role) {
+void SourceGuard::add_contents(const fs::path& folder, const std::string& role, IsScene is_scene) {
   const fs::path path = plain_path(folder);
-  if (add_source({path, true, role, identity_of(path), true, {}})) add_link_targets(path, path);
+  if (add_source({path, true, role, identity_of(path), true, {}})) add_link_targets(path, is_scene, path);
 }
 
 void SourceGuard::release_contents(const fs::path& folder) {

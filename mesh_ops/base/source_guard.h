@@ -15,17 +15,18 @@ class SourceGuard {
  public:
   SourceGuard() = default;
 
-  /// Protects a folder with its contents, or the folder of a file such as scene.json. Also protects files and scene
-  /// folders elsewhere that links in it point to. A folder that does not exist is protected by its name.
-  void add(const std::filesystem::path& source);
+  /// Whether a folder is a scene; see protect_scene() (scene_files.h).
+  using IsScene = bool (*)(const std::filesystem::path& folder);
+
+  /// Protects a folder with its contents, and files and scenes elsewhere that links in it point to. A folder that does
+  /// not exist is protected by its name.
+  void add(const std::filesystem::path& folder, IsScene is_scene);
   /// Protects a file, but not its folder. `role` completes the error "is …; choose another name", for example "the
   /// script of this run".
   void add_file(const std::filesystem::path& source, const std::string& role = "a file that this run reads");
-  /// As add_file() for a regular file other than scene.json; otherwise as add().
-  void add_input(const std::filesystem::path& source, const std::string& role = "a file that this run reads");
   /// Protects the contents of a scene folder, but allows replacing the whole folder: a script may import its own export
   /// and run again.
-  void add_contents(const std::filesystem::path& folder, const std::string& role);
+  void add_contents(const std::filesystem::path& folder, const std::string& role, IsScene is_scene);
   /// Undoes add_contents() after the run has replaced the folder.
   void release_contents(const std::filesystem::path& folder);
   bool empty() const { return sources_.empty(); }
@@ -54,10 +55,10 @@ class SourceGuard {
   static bool was_seen(const Source& source, const std::vector<Identity>& there);
   static bool is_same(const Source& source, const std::filesystem::path& path);
   // Adds a folder and the targets of links in it.
-  void add_folder(const std::filesystem::path& folder, const std::string& role,
+  void add_folder(const std::filesystem::path& folder, const std::string& role, IsScene is_scene,
                   const std::filesystem::path& owner = {});
-  // Adds the targets of links in a folder: files, and folders of objects.
-  void add_link_targets(const std::filesystem::path& folder, const std::filesystem::path& owner);
+  // Adds the targets of links in a folder: files, and scenes.
+  void add_link_targets(const std::filesystem::path& folder, IsScene is_scene, const std::filesystem::path& owner);
   // Returns false if the source is known already.
   bool add_source(Source source);
   // The source that a file at canonical path `wanted` would overwrite or be added to; null if none.

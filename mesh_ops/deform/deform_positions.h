@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "mesh_ops/deform/cage_deformation.h"
+#include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 #include "mesh_ops/index/weld.h"
 
 namespace rebake {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mesh_ops/deform/cage_deformation.h"
+#include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 #include "mesh_ops/deform/deform_positions.h"
 
 namespace rebake {

@@ -10,15 +10,14 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/mesh/manifold_mesh.h"
 
 namespace rebake {
 
 namespace {
 
-struct Traits : OpenMesh::DefaultTraits {
-  using Point = OpenMesh::Vec3d;
-};
-using Mesh = OpenMesh::PolyMesh_ArrayKernelT<Traits>;
+// Files may have faces of any number of sides.
+using Mesh = OpenMesh::PolyMesh_ArrayKernelT<ManifoldTraits>;
 
 std::string format_of(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
@@ -66,14 +65,10 @@ Cage read_cage(const std::filesystem::path& path) {
   Mesh mesh;
   OpenMesh::IO::Options options;
   // OpenMesh drops faces that make a mesh non-manifold and reports that only to its error stream.
-  std::ostringstream complaints;
-  omerr().connect(complaints);
-  omerr().disconnect(std::cerr);
+  const OpenMeshMessages complaints;
   const bool read = OpenMesh::IO::read_mesh(mesh, text, format, options);
-  omerr().disconnect(complaints);
-  omerr().connect(std::cerr);
   if (!read || mesh.n_faces() == 0) throw FileError(path, "contains no readable mesh");
-  if (!complaints.str().empty())
+  if (!complaints.text().empty())
     throw FileError(
         path, "is non-manifold: each edge of a cage must belong to two triangles, and each point to one triangle fan");
   Cage cage;

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "mesh_ops/base/source_guard.h"
-#include "mesh_ops/deform/cage.h"
+#include "mesh_ops/deform/cages/cage.h"
 
 namespace rebake {
 

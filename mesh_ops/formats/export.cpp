@@ -8,10 +8,10 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
-#include "mesh_ops/features/rotation_groups.h"
+#include "mesh_ops/features/atlas/rotation_groups.h"
+#include "mesh_ops/formats/mobilenerf/write_baked_folder.h"
+#include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/formats/scene_files.h"
-#include "mesh_ops/formats/scene_folder.h"
-#include "mesh_ops/formats/write_baked_folder.h"
 
 namespace rebake {
 

@@ -1,11 +1,16 @@
 #include "mesh_ops/formats/formats.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/formats/baked_folder.h"
-#include "mesh_ops/formats/scene_folder.h"
+#include "mesh_ops/formats/mobilenerf/baked_files.h"
+#include "mesh_ops/formats/mobilenerf/baked_folder.h"
+#include "mesh_ops/formats/rebake_scene/scene_folder.h"
+#include "mesh_ops/formats/rebake_scene/scene_folder_files.h"
+#include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
 
@@ -30,46 +35,73 @@ ExportReport write_rebake(const Scene& scene, const fs::path& folder, const Expo
     throw FieldError("layout", "does not apply to Rebake scenes: every object keeps its own; leave it out");
   ExportReport report;
   report.preserves_scene = true;
-  report.notes = save_scene_folder(scene, folder, options.sources, progress);
+  AtomicFolder out(folder, options.sources, refuse_foreign_content);
+  report.notes = save_scene_folder(scene, out, progress);
+  out.commit();
   return report;
 }
 
-// The first format that recognises a folder reads it.
+constexpr Format::Folder mobilenerf_folder{has_baked_decoder, is_baked_file_name,
+                                           [](const fs::path&) { return std::set<std::string>(); }};
+constexpr Format::Folder rebake_folder{has_scene_json, [](const std::string& name) { return name == "scene.json"; },
+                                       object_folders};
+
 constexpr Format table[] = {
-    {"rebake", "Rebake scene", [](const fs::path& folder) { return fs::exists(folder / "scene.json"); }, read_rebake,
-     write_rebake},
-    {"mobilenerf", "MobileNeRF", [](const fs::path& folder) { return fs::exists(folder / "mlp.json"); },
-     read_mobilenerf, export_scene},
+    {"mobilenerf", "MobileNeRF", "for the published viewers", "mlp.json", true, true,
+     [](const fs::path& path) { return fs::exists(path / "mlp.json") && !fs::exists(path / "scene.json"); },
+     read_mobilenerf, baked_files, export_scene, &mobilenerf_folder},
+    {"rebake", "Rebake scene", "keeps every node", "scene.json", true, true,
+     [](const fs::path& path) { return fs::exists(path / "scene.json"); }, read_rebake, scene_folder_files,
+     write_rebake, &rebake_folder},
 };
 
 }  // namespace
 
-std::string folder_title(const fs::path& path) {
-  fs::path normal = absolute_path(path);
-  if (normal.filename() == "scene.json") normal = normal.parent_path();
-  return normal.filename().string();
-}
+std::string folder_title(const fs::path& path) { return absolute_path(scene_root(path)).filename().string(); }
 
 std::span<const Format> formats() { return table; }
 
-const Format& format_named(const std::string& name) {
-  std::string known;
-  for (const Format& format : formats()) {
-    if (format.name == name) return format;
-    known += (known.empty() ? "" : ", ") + std::string(format.name);
-  }
-  throw FieldError("format", "\"" + name + "\" is not known (known: " + known + ")");
+const Format* format_at(const fs::path& path) {
+  for (const Format& format : formats())
+    if (format.recognises != nullptr && format.recognises(path)) return &format;
+  return nullptr;
 }
 
-Scene read_any(const fs::path& path, Axes axes, const Progress& progress) {
-  // A path to scene.json stands for its folder.
-  const fs::path folder =
-      path.filename() == "scene.json" ? (path.has_parent_path() ? path.parent_path() : fs::path(".")) : path;
-  if (!fs::exists(folder)) throw FileError(folder, "does not exist");
-  if (!fs::is_directory(folder)) throw FileError(folder, "is not a folder");
+std::vector<std::string> written_formats() {
+  std::vector<std::string> names;
   for (const Format& format : formats())
-    if (format.recognises(folder)) return format.read(folder, axes, progress);
-  throw FileError(folder, "contains neither mlp.json (a MobileNeRF folder) nor scene.json (a Rebake scene)");
+    if (format.write != nullptr) names.emplace_back(format.name);
+  return names;
+}
+
+const char* written_formats_help() {
+  static const std::string help = [] {
+    std::string text;
+    for (const Format& format : formats())
+      if (format.write != nullptr) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", format.name, format.help);
+    return text;
+  }();
+  return help.c_str();
+}
+
+const Format& format_named(const std::string& name) {
+  for (const Format& format : formats())
+    if (format.name == name && format.write != nullptr) return format;
+  throw FieldError("format", fmt::format("\"{}\" is not known (known: {})", name, fmt::join(written_formats(), ", ")));
+}
+
+Scene read_any(const fs::path& named, Axes axes, const Progress& progress) {
+  const fs::path path = scene_root(named);
+  if (!fs::exists(path)) throw FileError(path, "does not exist");
+  if (const Format* const format = format_at(path)) return format->read(path, axes, progress);
+  std::vector<std::string> folders, files;
+  for (const Format& format : formats())
+    if (format.read != nullptr)
+      (format.is_folder ? folders : files).push_back(fmt::format("{} ({})", format.marker, format.title));
+  if (fs::is_directory(path))
+    throw FileError(path, fmt::format("is not a scene: it contains none of {}", fmt::join(folders, ", ")));
+  throw FileError(path, files.empty() ? "is not a folder"
+                                      : fmt::format("is neither a folder nor one of {}", fmt::join(files, ", ")));
 }
 
 std::vector<std::string> assumptions_of(const Scene& scene) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,27 +12,53 @@
 
 namespace rebake {
 
-/// A folder format that can be read and written; an entry of the table formats().
+/// A format of scenes; an entry of the table formats(). Import, export, hashes, source guards, help, Python and the
+/// window use the table.
 struct Format {
-  const char* name;   ///< identifier in scripts and on the command line
-  const char* title;  ///< display name
-  bool (*recognises)(const std::filesystem::path& folder);
-  Scene (*read)(const std::filesystem::path& folder, Axes axes, const Progress& progress);
-  /// Replaces the folder atomically. Throws FileError, and FieldError if the format does not support a given layout.
-  ExportReport (*write)(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
+  const char* name;    ///< identifier in scripts and on the command line
+  const char* title;   ///< display name
+  const char* help;    ///< its use: "keeps every node"
+  const char* marker;  ///< for people, the file by which one recognises it: "mlp.json", ".glb"
+  bool is_folder;      ///< a folder; otherwise a single file
+  bool has_colors;     ///< whether it stores colours, so that an export reports how pictures change
+
+  /// Whether read() accepts this path; null for formats that are only written.
+  bool (*recognises)(const std::filesystem::path& path);
+  Scene (*read)(const std::filesystem::path& path, Axes axes, const Progress& progress);
+  /// Files that read() reads, relative to the folder; for a single file, those beside it that it refers to. Null for
+  /// formats that are only written.
+  std::vector<std::filesystem::path> (*files)(const std::filesystem::path& path);
+  /// Replaces the folder or file atomically. Throws FileError, and FieldError if the format does not support an option.
+  /// Null for formats that are only read.
+  ExportReport (*write)(const Scene& scene, const std::filesystem::path& path, const ExportOptions& options,
                         const Progress& progress);
+
+  /// For folders that are written, which may be replaced by a new export; otherwise null.
+  struct Folder {
+    /// Whether the files have the content of the format, not only the names.
+    bool (*is_genuine)(const std::filesystem::path& folder);
+    bool (*is_own_file)(const std::string& name);  ///< whether a file of this name belongs to the format
+    std::set<std::string> (*own_folders)(const std::filesystem::path& folder);  ///< names of the folders in it
+  };
+  const Folder* folder;
 };
 
 std::span<const Format> formats();
-/// Finds a format by its identifier. Throws FieldError that lists the known ones.
+/// The format that reads this path; null if none.
+const Format* format_at(const std::filesystem::path& path);
+/// Finds a format that is written by its identifier. Throws FieldError that lists the known ones.
 const Format& format_named(const std::string& name);
+/// The identifiers of the formats that are written, the default first.
+std::vector<std::string> written_formats();
+/// The formats that are written with their uses: "mobilenerf: for the published viewers; rebake: keeps every node".
+const char* written_formats_help();
 
-/// Display name of a folder: its last component. scene.json stands for its folder.
+/// Display name of a scene: the last component of scene_root().
 std::string folder_title(const std::filesystem::path& path);
 
-/// Reads a folder of any known format as a scene. A MobileNeRF folder becomes one node with the name of the folder.
-/// `axes` applies to folders that do not state theirs. Throws FileError.
-Scene read_any(const std::filesystem::path& folder, Axes axes, const Progress& progress = {});
+/// Reads a scene of any known format. A MobileNeRF folder becomes one node with the name of the folder. `axes` applies
+/// to formats that do not state theirs. Throws FileError.
+Scene read_any(const std::filesystem::path& path, Axes axes, const Progress& progress = {});
 
 /// Assumptions made when the scene's folders were read (Origin::assumptions), as sentences without duplicates.
 std::vector<std::string> assumptions_of(const Scene& scene);

@@ -5,23 +5,34 @@
 #include <string>
 #include <vector>
 
+#include "mesh_ops/base/source_guard.h"
+
 namespace rebake {
 
-/// Whether a file name belongs to a MobileNeRF folder or a Rebake scene.
-bool is_format_file_name(const std::string& name);
+// Files of scenes of any format in the table formats().
 
-/// The folder of a path to import: a path to scene.json stands for its folder.
-std::filesystem::path scene_folder_of(const std::filesystem::path& path);
+/// The path that read_any() reads: the main file of a folder (scene.json, mlp.json) stands for it. It may not exist
+/// yet.
+std::filesystem::path scene_root(const std::filesystem::path& path);
 
-/// The files of the scene or object in a folder, relative to it, sorted: files of texture sets, and for a scene also
-/// scene.json and the files of its object folders. Other files are skipped. Throws FileError.
+/// The files of the scene in a folder, relative to it, sorted: those that reading it reads. Other files are skipped.
+/// Empty if no format recognises the folder. Throws FileError.
 std::vector<std::filesystem::path> scene_files(const std::filesystem::path& folder);
 
-/// Hash of the names and contents of scene_files(). A path to scene.json stands for its folder. Throws FileError.
+/// Hash of the names and contents of scene_files(). `path`: see scene_root(). Throws FileError.
 std::uint64_t folder_hash(const std::filesystem::path& path);
 
 /// Throws FileError if a folder that would be replaced contains anything that is not part of its scene, since it would
 /// be lost.
 void refuse_foreign_content(const std::filesystem::path& folder);
+
+/// Protects a scene from being overwritten, with files and scenes elsewhere that links in it point to.
+void protect_scene(SourceGuard& guard, const std::filesystem::path& path);
+/// Protects a scene as protect_scene(), or a single file. `role`: see SourceGuard::add_file().
+void protect_input(SourceGuard& guard, const std::filesystem::path& path,
+                   const std::string& role = "a file that this run reads");
+/// As protect_scene(), but allows replacing the whole folder: a script may import its own export and run again. See
+/// SourceGuard::release_contents().
+void protect_scene_contents(SourceGuard& guard, const std::filesystem::path& folder, const std::string& role);
 
 }  // namespace rebake

@@ -8,8 +8,8 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
-#include "mesh_ops/light/transfer_model.h"
-#include "mesh_ops/network/texel_colors.h"
+#include "mesh_ops/light/learned/transfer_model.h"
+#include "mesh_ops/training/texel_colors.h"
 
 namespace rebake {
 

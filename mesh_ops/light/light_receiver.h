@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/light/baked_light.h"
-#include "mesh_ops/light/change_estimate.h"
+#include "mesh_ops/light/estimate/change_estimate.h"
+#include "mesh_ops/light/relight/baked_light.h"
+#include "mesh_ops/light/relight/drag_light.h"
 
 namespace rebake {
 

@@ -3,13 +3,12 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "mesh_ops/base/results.h"
-#include "mesh_ops/light/drag_light.h"
-#include "mesh_ops/light/light_decision.h"
+#include "mesh_ops/light/estimate/light_decision.h"
+#include "mesh_ops/light/relight/drag_light.h"
+#include "mesh_ops/light/relight/lighting_options.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
@@ -29,16 +28,6 @@ struct Lighting {
 
   /// The map of a node's texture set; null if nothing changes or its vertices have changed since.
   std::shared_ptr<const LightMap> map_of(NodeId node, std::size_t number, const TextureSet& set) const;
-};
-
-struct LightingOptions {
-  int rays = 0;        ///< 0: the scene's setting
-  double spacing = 4;  ///< distance of light nodes in texels; larger for objects with more than `max_nodes`
-  std::size_t max_nodes = 400000;
-  bool everything = false;         ///< run all effects, for audits
-  ResultCache* results = nullptr;  ///< cache of estimates and traced light; null for none
-  bool keep_traced = true;         ///< false: cache estimates only
-  std::set<NodeId> turning{};      ///< nodes whose triangles are about to be dragged
 };
 
 /// Computes the light effects that a scene calls for (none if Scene::light is null): decides by bounds, estimates

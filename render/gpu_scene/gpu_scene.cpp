@@ -82,11 +82,11 @@ GpuMesh upload(PreparedMesh made, const GpuSurface& surface) {
       gl::make_buffer(GL_ARRAY_BUFFER, made.positions.data(), made.positions.size() * sizeof(made.positions[0]));
   bind_vertices(mesh.positions, surface);
   if (!made.turns.empty()) {
-    mesh.turns = gl::make_buffer(GL_ARRAY_BUFFER, made.turns.data(), made.turns.size() * sizeof(float));
+    mesh.turns = gl::make_buffer(GL_ARRAY_BUFFER, made.turns.data(), made.turns.size() * sizeof(made.turns[0]));
     for (GLuint column = 0; column < 3; ++column) {
       glEnableVertexAttribArray(2 + column);
-      glVertexAttribPointer(2 + column, 3, GL_FLOAT, GL_FALSE, 9 * sizeof(float),
-                            reinterpret_cast<const void*>(column * 3 * sizeof(float)));
+      glVertexAttribPointer(2 + column, 3, GL_FLOAT, GL_FALSE, sizeof(glm::mat3),
+                            reinterpret_cast<const void*>(column * sizeof(glm::vec3)));
     }
   }
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, surface.indices.name());
@@ -142,14 +142,12 @@ PreparedMesh prepared(const TextureSet& set, const ShownFaces& shown) {
   if (!soup.bounds().isEmpty()) made.center = soup.bounds().center();
   made.positions.resize(soup.positions().size());
   tbb::parallel_for(std::size_t{0}, made.positions.size(),
-                    [&](std::size_t v) { made.positions[v] = (soup.positions()[v] - made.center).cast<float>(); });
+                    [&](std::size_t v) { made.positions[v] = to_glm(Vec3(soup.positions()[v] - made.center)); });
   if (soup.rotations() != nullptr) {
     const auto& rotations = *soup.rotations();
-    made.turns.resize(rotations.size() * 9);
-    tbb::parallel_for(std::size_t{0}, rotations.size(), [&](std::size_t v) {
-      const Mat3 turn = rotations[v].matrix();
-      for (std::size_t k = 0; k < 9; ++k) made.turns[v * 9 + k] = static_cast<float>(turn.data()[k]);
-    });
+    made.turns.resize(rotations.size());
+    tbb::parallel_for(std::size_t{0}, rotations.size(),
+                      [&](std::size_t v) { made.turns[v] = to_glm(Mat3(rotations[v].matrix())); });
   }
   made.clusters = clusters_of(soup, *shown.faces);
   made.nearby = face_clusters(soup, *shown.faces, *shown.nearby, made.center);
@@ -423,7 +421,7 @@ std::uint64_t GpuScene::texel_bytes() const {
 void bind_vertices(const gl::Buffer& positions, const GpuSurface& surface) {
   glBindBuffer(GL_ARRAY_BUFFER, positions.name());
   glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(Eigen::Vector3f), nullptr);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(glm::vec3), nullptr);
   glBindBuffer(GL_ARRAY_BUFFER, surface.vertices.name());
   glEnableVertexAttribArray(1);
   glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(SurfaceVertex),

@@ -8,6 +8,7 @@
 
 #include "mesh_ops/light/lighting.h"
 #include "render/gl/objects.h"
+#include "render/gl/to_glm.h"
 #include "render/gpu_scene/clusters.h"
 #include "render/gpu_scene/resources.h"
 #include "render/gpu_scene/surface.h"
@@ -27,8 +28,8 @@ struct PreparedMesh {
   /// Faces that the clusters contain. A surface that was taken over from another texture may have more faces.
   std::shared_ptr<const std::vector<Face>> shown;
   Vec3 center{0, 0, 0};
-  std::vector<Eigen::Vector3f> positions;
-  std::vector<float> turns;  ///< 3×3 rotation per vertex, column-major; empty if no vertex is rotated
+  std::vector<glm::vec3> positions;
+  std::vector<glm::mat3> turns;  ///< rotation per vertex; empty if no vertex is rotated
   std::vector<GpuCluster> clusters;
   FaceClusters nearby;  ///< clusters for occlusion culling
 };

@@ -156,23 +156,20 @@ PreparedSurface prepared_surface(const TextureSet& set, bool coded) {
   tbb::parallel_for(std::size_t{0}, made.vertices.size(), [&](std::size_t v) {
     const Vec2& uv = soup.uvs()[v];
     SurfaceVertex& vertex = made.vertices[v];
-    vertex = {{static_cast<float>(uv.x() * width), static_cast<float>((1 - uv.y()) * height)}, {}, {}, {}};
+    vertex = {glm::vec2(uv.x() * width, (1 - uv.y()) * height), {}, {}, {}};
     const std::uint32_t number = packing->rect_of_vertex[v];
     if (number == packing->rects.size()) {
       if (!packing->whole || made.coded) return;
       // The whole texture is resident, so the vertex can use its own texels.
-      vertex.last_texel[0] = static_cast<std::uint16_t>(packing->width - 1);
-      vertex.last_texel[1] = static_cast<std::uint16_t>(packing->height - 1);
+      vertex.last_texel = glm::u16vec2(packing->width - 1, packing->height - 1);
       return;
     }
     const PackedRect& rect = packing->rects[number];
-    vertex.first_texel[0] = rect.x;
-    vertex.first_texel[1] = rect.y;
-    vertex.last_texel[0] = static_cast<std::uint16_t>(rect.x + rect.width - 1);
-    vertex.last_texel[1] = static_cast<std::uint16_t>(rect.y + rect.height - 1);
+    vertex.first_texel = glm::u16vec2(rect.x, rect.y);
+    vertex.last_texel = glm::u16vec2(rect.x + rect.width - 1, rect.y + rect.height - 1);
     const std::uint32_t first_block = made.coded ? made.coded->first_block[number] : 0;
-    vertex.place[0] = made.coded ? static_cast<std::uint16_t>(first_block & 0xffffU) : rect.place_x;
-    vertex.place[1] = made.coded ? static_cast<std::uint16_t>(first_block >> 16) : rect.place_y;
+    vertex.place =
+        made.coded ? glm::u16vec2(first_block & 0xffffU, first_block >> 16) : glm::u16vec2(rect.place_x, rect.place_y);
   });
   return made;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <glm/ext/vector_uint2_sized.hpp>
+#include <glm/vec2.hpp>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,10 +15,10 @@ namespace rebake {
 
 /// Vertex attributes of geometry.vert except the position.
 struct SurfaceVertex {
-  float texel[2];                               ///< texture coordinates in texels, v down
-  std::uint16_t first_texel[2], last_texel[2];  ///< corners of its rectangle in the texture, inclusive
+  glm::vec2 texel;                       ///< texture coordinates in texels, v down
+  glm::u16vec2 first_texel, last_texel;  ///< corners of its rectangle in the texture, inclusive
   /// Corner of the rectangle in the packed texture; if texels are coded, low and high half of its first block's index.
-  std::uint16_t place[2];
+  glm::u16vec2 place;
 };
 
 /// Faces of a set that may show opaque texels, and a spatial order of them, which is reused when edits move vertices.

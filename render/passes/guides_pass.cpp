@@ -11,14 +11,16 @@ constexpr double nearer = 2e-3;
 
 void execute(const PassInput& input) {
   struct Vertex {
-    float position[3], color[4], hidden;
+    glm::vec3 position;
+    glm::vec4 color;
+    float hidden;
   };
   const Camera& camera = input.plan.view.camera;
   const Mat3 rows = world_to_camera(camera);
   std::vector<Vertex> vertices;
   if (input.plan.guides.triangles) {
     // Moves triangles slightly towards the eye along view rays, so that they cover the same pixels.
-    const Eigen::Vector3f c = input.plan.guides.triangle_color.cast<float>();
+    const glm::vec3 color = to_glm(input.plan.guides.triangle_color);
     for (const Guides::Triangle& triangle : *input.plan.guides.triangles)
       for (std::size_t k = 0; k < 3; ++k) {
         Vec3 at = rows * (triangle.corners[k] - camera.eye);
@@ -26,17 +28,13 @@ void execute(const PassInput& input) {
           at.z() *= 1 - nearer;
         else
           at *= 1 - nearer;
-        const Eigen::Vector3f p = at.cast<float>();
-        vertices.push_back({{p.x(), p.y(), p.z()}, {c.x(), c.y(), c.z(), static_cast<float>(triangle.opacity[k])}, -1});
+        vertices.push_back({to_glm(at), glm::vec4(color, triangle.opacity[k]), -1});
       }
   }
   const auto in_triangles = static_cast<GLsizei>(vertices.size());
   for (const Guides::Line& line : input.plan.guides.lines)
     for (const Vec3* end : {&line.from, &line.to}) {
-      const Eigen::Vector3f p = (rows * (*end - camera.eye)).cast<float>();
-      const Eigen::Vector3f c = line.color.cast<float>();
-      vertices.push_back({{p.x(), p.y(), p.z()},
-                          {c.x(), c.y(), c.z(), static_cast<float>(line.opacity)},
+      vertices.push_back({to_glm(Vec3(rows * (*end - camera.eye))), glm::vec4(to_glm(line.color), line.opacity),
                           static_cast<float>(line.hidden_opacity)});
     }
   input.draw_to({Target::picture}, false);

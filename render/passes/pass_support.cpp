@@ -14,13 +14,6 @@ namespace rebake {
 
 namespace {
 
-glm::mat4 to_glm(const Eigen::Matrix4d& matrix) {
-  glm::mat4 result;
-  for (int column = 0; column < 4; ++column)
-    for (int row = 0; row < 4; ++row) result[column][row] = static_cast<float>(matrix(row, column));
-  return result;
-}
-
 GLint location(const gl::Program& program, const char* name) { return glGetUniformLocation(program.name(), name); }
 
 bool outside(const Eigen::Matrix4d& object_to_clip, const Box& box) {
@@ -111,13 +104,6 @@ void bind_decoders(const PassInput& input, const gl::Program& program) {
   glBindTexture(GL_TEXTURE_BUFFER, input.state.tables.layout.name());
   set_uniform(program, "decoder_weights", 4);
   set_uniform(program, "decoder_layout", 5);
-}
-
-glm::mat3 to_glm(const Mat3& matrix) {
-  glm::mat3 result;
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row) result[column][row] = static_cast<float>(matrix(row, column));
-  return result;
 }
 
 Mat3 camera_to_fed(const FramePlan& plan, const DecodeFrame& frame) {

@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "render/gl/to_glm.h"
 #include "render/graph/passes.h"
 #include "render/passes/depth_pyramid.h"
 
@@ -19,7 +20,6 @@ std::string decoder_preamble(const PassInput& input);
 /// Binds the weight buffers, if the plan uses them, to texture units 4 and 5.
 void bind_decoders(const PassInput& input, const gl::Program& program);
 
-glm::mat3 to_glm(const Mat3& matrix);
 /// Rotation from camera space into the space of the directions that are fed to the decoder.
 Mat3 camera_to_fed(const FramePlan& plan, const DecodeFrame& frame);
 /// Factor and offset that decode the stored alpha in unpack.glsl.

@@ -74,7 +74,7 @@ void execute(const PassInput& input) {
   bind_decoders(input, shader);
   set_ray_uniforms(shader, plan.view, side);
   const Color& b = plan.background;
-  set_uniform(shader, "background", glm::vec3(b.x(), b.y(), b.z()));
+  set_uniform(shader, "background", to_glm(b));
   draw_rectangles(plan.view, shader, drawn_pixels(input));
 }
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "mesh_ops/features/fit.h"
+#include "mesh_ops/training/fit.h"
 
 namespace rebake::bakery {
 

@@ -9,7 +9,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
-#include "mesh_ops/deform/closed_form.h"
+#include "mesh_ops/deform/bends/closed_form.h"
 #include "mesh_ops/deform/deform_object.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/index/index.h"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/mobilenerf/write_baked_folder.h"
 #include "mesh_ops/formats/scene_files.h"
-#include "mesh_ops/formats/write_baked_folder.h"
 #include "samples/synthetic/large_scene.h"
 
 int main(int argc, char** argv) {

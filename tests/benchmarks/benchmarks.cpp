@@ -7,9 +7,9 @@
 #include <chrono>
 #include <numbers>
 
-#include "mesh_ops/formats/baked_folder.h"
 #include "mesh_ops/formats/export.h"
-#include "mesh_ops/formats/obj.h"
+#include "mesh_ops/formats/mobilenerf/baked_folder.h"
+#include "mesh_ops/formats/mobilenerf/obj.h"
 #include "render/gl/objects.h"
 #include "render/picture.h"
 #include "tests/support/made_scenes.h"

@@ -9,8 +9,8 @@
 #include <map>
 
 #include "editor/studies/gradient_binding.h"
+#include "mesh_ops/deform/cages/wrap.h"
 #include "mesh_ops/deform/deform_object.h"
-#include "mesh_ops/deform/wrap.h"
 #include "render/picture.h"
 #include "tests/support/made_scenes.h"
 

@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <sys/resource.h>
 
-#include "mesh_ops/features/fuse.h"
+#include "mesh_ops/features/distill/fuse.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {

@@ -9,10 +9,10 @@
 #include "editor/studies/posed_body.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/index/index.h"
-#include "mesh_ops/light/light_estimate.h"
+#include "mesh_ops/light/estimate/light_estimate.h"
 #include "mesh_ops/light/lighting.h"
-#include "mesh_ops/light/transfer.h"
-#include "mesh_ops/light/transfer_model.h"
+#include "mesh_ops/light/train_transfer_model.h"
+#include "mesh_ops/light/transport/transfer.h"
 #include "render/picture.h"
 
 namespace rebake::test {

@@ -6,12 +6,12 @@
 #include "editor/script/script.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
-#include "mesh_ops/formats/baked_positions_file.h"
-#include "mesh_ops/formats/camera_json.h"
-#include "mesh_ops/formats/mlp_json.h"
-#include "mesh_ops/formats/obj.h"
-#include "mesh_ops/formats/rotations_file.h"
-#include "mesh_ops/formats/rotations_json.h"
+#include "mesh_ops/formats/cameras/camera_json.h"
+#include "mesh_ops/formats/mobilenerf/baked_positions_file.h"
+#include "mesh_ops/formats/mobilenerf/mlp_json.h"
+#include "mesh_ops/formats/mobilenerf/obj.h"
+#include "mesh_ops/formats/mobilenerf/rotations_file.h"
+#include "mesh_ops/formats/mobilenerf/rotations_json.h"
 
 namespace rebake::fuzz {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/formats/png_writer.h"
+#include "mesh_ops/formats/images/png_writer.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {

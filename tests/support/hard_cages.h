@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "mesh_ops/deform/cage.h"
+#include "mesh_ops/deform/cages/cage.h"
 
 namespace rebake::test {
 

@@ -5,7 +5,7 @@
 
 #include "editor/edits/edit.h"
 #include "mesh_ops/index/index.h"
-#include "mesh_ops/light/irradiance.h"
+#include "mesh_ops/light/transport/irradiance.h"
 #include "tests/support/lit_objects.h"
 #include "tests/support/made_scenes.h"
 

@@ -6,9 +6,9 @@
 #include <random>
 
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/formats/feature_png.h"
-#include "mesh_ops/formats/mlp_json.h"
-#include "mesh_ops/formats/obj.h"
+#include "mesh_ops/formats/mobilenerf/feature_png.h"
+#include "mesh_ops/formats/mobilenerf/mlp_json.h"
+#include "mesh_ops/formats/mobilenerf/obj.h"
 
 namespace rebake::test {
 

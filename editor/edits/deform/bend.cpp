@@ -1,8 +1,10 @@
 #include "editor/edits/deform/bend.h"
 
+#include <fmt/format.h>
+
 #include <numbers>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 
@@ -14,6 +16,8 @@ Outcome apply(const Scene& scene, const Bend& edit) {
   return with_closed_form(scene, edit.target, edit.axis, form);
 }
 
+std::string done_words(const Bend& edit) { return fmt::format("Bent by {:.4g}°:", edit.degrees); }
+
 REBAKE_DESCRIBE_EDIT(
     Bend, "Bends triangles so that the axis becomes an arc of the same length; parts beyond the limits move rigidly.",
     (auto& edit, auto& visit) {
@@ -21,7 +25,9 @@ REBAKE_DESCRIBE_EDIT(
       visit("degrees", edit.degrees, Need::required, "angle between both limits", Unit::degrees);
       DeformAxis::fields(edit.axis, visit);
       visit("direction", edit.direction, Need::optional,
-            "direction of the bend; only its part orthogonal to the axis counts");
+            "direction of the bend; only its part orthogonal to the axis counts; if it is nearly parallel to an "
+            "automatic axis, "
+            "the world axis most across that is taken");
     })
 
 }  // namespace rebake

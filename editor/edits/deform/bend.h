@@ -8,6 +8,11 @@ namespace rebake {
 /// follow rigidly or stay.
 struct Bend {
   static constexpr const char* op = "bend";
+  static constexpr bool deforms = true;
+  static constexpr AdjustableField adjustable[] = {{"degrees", "Angle", AdjustableField::Kind::degrees},
+                                                   {"from", "Start", AdjustableField::Kind::length},
+                                                   {"to", "End", AdjustableField::Kind::length},
+                                                   {"falloff", "Falloff", AdjustableField::Kind::length}};
   DeformTarget target;
   DeformAxis axis;
   double degrees = 0;       ///< angle between both limits
@@ -17,5 +22,7 @@ template <>
 const EditType& edit_type<Bend>();
 
 Outcome apply(const Scene& scene, const Bend& edit);
+/// The past tense for titles of steps: see EditType::done.
+std::string done_words(const Bend& edit);
 
 }  // namespace rebake

@@ -1,6 +1,6 @@
 #include "editor/edits/deform/cage.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 

@@ -8,6 +8,9 @@ namespace rebake {
 /// View-dependent colours rotate with the surface.
 struct CageDeform {
   static constexpr const char* op = "cage";
+  static constexpr const char* done = "Deformed by a cage:";
+  static constexpr bool deforms = true;
+  static constexpr AdjustableField adjustable[] = {{"falloff", "Falloff", AdjustableField::Kind::length}};
   DeformTarget target;
   CageSource cage;
   CageMoves moves;  ///< applied one after another

@@ -2,9 +2,9 @@
 
 #include "editor/edits/support.h"
 #include "editor/fields/codec.h"
-#include "mesh_ops/deform/cage.h"
+#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/wrap.h"
 #include "mesh_ops/deform/deform_object.h"
-#include "mesh_ops/deform/wrap.h"
 
 namespace rebake {
 

@@ -2,7 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
-#include "mesh_ops/deform/curved_form.h"
+#include "editor/edits/deform/target_spine.h"
+#include "mesh_ops/deform/bends/curved_form.h"
 
 namespace rebake {
 
@@ -36,10 +37,41 @@ std::vector<std::string> spine_warnings(const std::vector<Vec3>& spine) {
 
 }  // namespace
 
-Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& axis, ClosedForm form) {
+namespace {
+
+// The axis along the part's spine. Tapers need a straight one.
+DeformAxis found_axis(const Scene& scene, const DeformTarget& target, DeformAxis axis, ClosedForm::Kind kind) {
+  if (axis.origin) throw FieldError("origin", "cannot be combined with an automatic axis; leave it out");
+  if (!axis.spine.points.empty()) throw FieldError("spine", "cannot be combined with an automatic axis; leave it out");
+  const Spine spine = spine_of_targets(scene, {target});
+  if (!(spine.length > 0)) throw EditError("the triangles have no axis that can be found; set axis to a direction");
+  axis.axis = spine.along;
+  if (kind == ClosedForm::Kind::taper || spine.curve.size() < 2)
+    axis.origin = spine.foot;
+  else
+    axis.spine.points = spine.curve;
+  return axis;
+}
+
+// `direction`, or if it is nearly parallel to an axis that was found, the world axis that is most across it.
+Vec3 beside(const Vec3& axis, const Vec3& direction) {
+  constexpr double nearly_parallel = 0.05;
+  if ((direction - direction.dot(axis) * axis).stableNorm() > nearly_parallel * direction.stableNorm())
+    return direction;
+  Eigen::Index across = 0;
+  axis.cwiseAbs().minCoeff(&across);
+  return Vec3::Unit(across);
+}
+
+}  // namespace
+
+Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& given, ClosedForm form) {
   const DeformSet set = deform_set(scene, target);
-  if (!axis.axis.allFinite() || !(axis.axis.stableNorm() > 0)) throw FieldError("axis", "must be finite and not zero");
-  form.axis = axis.axis.stableNormalized();
+  const DeformAxis axis = given.axis.automatic ? found_axis(scene, target, given, form.kind) : given;
+  const Vec3& along = axis.axis.direction;
+  if (!along.allFinite() || !(along.stableNorm() > 0)) throw FieldError("axis", "must be finite and not zero");
+  form.axis = along.stableNormalized();
+  if (given.axis.automatic && form.kind == ClosedForm::Kind::bend) form.direction = beside(form.axis, form.direction);
   const auto [low, high] = set.extent_along(form.axis);
   if (!axis.spine.points.empty()) {
     if (axis.origin) throw FieldError("origin", "cannot be combined with spine, which begins at its first point");

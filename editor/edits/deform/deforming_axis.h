@@ -1,20 +1,22 @@
 #pragma once
 
 #include "editor/edits/deform/deforming.h"
-#include "mesh_ops/deform/closed_form.h"
+#include "mesh_ops/deform/bends/closed_form.h"
 
 namespace rebake {
 
 /// Axis and limits of a deformation.
 struct DeformAxis {
-  Vec3 axis{0, 1, 0};              ///< direction in world space, any length but 0
+  AxisDirection axis;              ///< direction in world space; automatic: the spine of the triangles
   std::optional<Vec3> origin;      ///< world point on the axis; nothing: lower end of the box, in its middle
   std::optional<double> from, to;  ///< limits along the axis from the origin; nothing: the triangles' ends
   PolyLine spine;                  ///< curved axis; limits are then arc lengths along it
 
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
-    visit("axis", self.axis, Need::optional, "direction of the axis in world space");
+    visit("axis", self.axis, Need::optional,
+          "direction of the axis in world space; auto: along the part, from where it is attached, following its centre "
+          "line (tapers: straight); origin and spine must then be left out");
     visit(
         "origin", self.origin, Need::optional,
         "world point on the axis; default: the axis runs through the middle of the triangles' box, from its lower end");

@@ -1,12 +1,12 @@
 #include "editor/edits/deform/handles.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 #include <fmt/format.h>
 
 #include <map>
 
-#include "mesh_ops/deform/handles.h"
+#include "mesh_ops/deform/handles/handles.h"
 
 namespace rebake {
 

@@ -8,6 +8,8 @@ namespace rebake {
 /// coordinates carry the triangles along.
 struct HandlesDeform {
   static constexpr const char* op = "handles";
+  static constexpr const char* done = "Deformed by handles:";
+  static constexpr bool deforms = true;
   DeformTarget target;
   CageSource cage;
   CageMoves moves;       ///< handles: vertices with their motions

@@ -1,6 +1,8 @@
 #include "editor/edits/deform/stretch.h"
 
-#include "editor/edits/describe.h"
+#include <fmt/format.h>
+
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 
@@ -10,6 +12,8 @@ Outcome apply(const Scene& scene, const Stretch& edit) {
   form.factor = edit.factor;
   return with_closed_form(scene, edit.target, edit.axis, form);
 }
+
+std::string done_words(const Stretch& edit) { return fmt::format("Stretched by {:.4g}:", edit.factor); }
 
 REBAKE_DESCRIBE_EDIT(
     Stretch, "Stretches triangles along an axis between the limits.", (auto& edit, auto& visit) {

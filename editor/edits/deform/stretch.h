@@ -8,6 +8,11 @@ namespace rebake {
 /// lower limit stay.
 struct Stretch {
   static constexpr const char* op = "stretch";
+  static constexpr bool deforms = true;
+  static constexpr AdjustableField adjustable[] = {{"factor", "Factor", AdjustableField::Kind::factor},
+                                                   {"from", "Start", AdjustableField::Kind::length},
+                                                   {"to", "End", AdjustableField::Kind::length},
+                                                   {"falloff", "Falloff", AdjustableField::Kind::length}};
   DeformTarget target;
   DeformAxis axis;
   double factor = 1;  ///< new length between the limits, divided by the current length
@@ -16,5 +21,7 @@ template <>
 const EditType& edit_type<Stretch>();
 
 Outcome apply(const Scene& scene, const Stretch& edit);
+/// The past tense for titles of steps: see EditType::done.
+std::string done_words(const Stretch& edit);
 
 }  // namespace rebake

@@ -1,6 +1,8 @@
 #include "editor/edits/deform/taper.h"
 
-#include "editor/edits/describe.h"
+#include <fmt/format.h>
+
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 
@@ -10,6 +12,8 @@ Outcome apply(const Scene& scene, const Taper& edit) {
   form.factor = edit.factor;
   return with_closed_form(scene, edit.target, edit.axis, form);
 }
+
+std::string done_words(const Taper& edit) { return fmt::format("Tapered by {:.4g}:", edit.factor); }
 
 REBAKE_DESCRIBE_EDIT(
     Taper, "Tapers triangles: scales them orthogonally to an axis, increasingly between the limits.",

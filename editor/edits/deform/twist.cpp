@@ -1,8 +1,10 @@
 #include "editor/edits/deform/twist.h"
 
+#include <fmt/format.h>
+
 #include <numbers>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 
@@ -12,6 +14,8 @@ Outcome apply(const Scene& scene, const Twist& edit) {
   form.radians = edit.degrees * std::numbers::pi / 180;
   return with_closed_form(scene, edit.target, edit.axis, form);
 }
+
+std::string done_words(const Twist& edit) { return fmt::format("Twisted by {:.4g}°:", edit.degrees); }
 
 REBAKE_DESCRIBE_EDIT(
     Twist, "Twists triangles about an axis, with an angle that grows between the limits.", (auto& edit, auto& visit) {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "editor/edits/nodes/transform.h"
 
 namespace rebake {

@@ -16,6 +16,7 @@ REBAKE_CODEC(AlignTo);
 /// Aligns the world boxes of nodes along an axis with the first node, or distributes them with equal gaps.
 struct Align {
   static constexpr const char* op = "align";
+  static constexpr const char* done = "Aligned";
   std::vector<NodeRef> nodes;  ///< two or more, none inside another
   WorldAxis axis = WorldAxis::x;
   AlignTo to = AlignTo::middle;

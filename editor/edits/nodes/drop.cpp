@@ -12,7 +12,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "editor/edits/nodes/transform.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/opacity.h"

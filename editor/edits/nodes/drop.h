@@ -8,6 +8,7 @@ namespace rebake {
 /// that intersects a surface or the ground is lifted out first.
 struct Drop {
   static constexpr const char* op = "drop";
+  static constexpr const char* done = "Dropped";
   NodeRef node;
   std::optional<double> ground;  ///< y of a level ground plane; nothing: the scene's ground
 };

@@ -1,6 +1,6 @@
 #include "editor/edits/nodes/duplicate.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "editor/edits/nodes/transform.h"
 
 namespace rebake {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 
@@ -81,6 +81,8 @@ Outcome apply(const Scene& scene, const GroundEdit& edit) {
       fmt::format("ground: height {:.6g} along ({:.4g}, {:.4g}, {:.4g})", result.ground.height, up.x(), up.y(), up.z());
   return {std::move(result), {{std::move(said)}}};
 }
+
+std::string whole_title(const GroundEdit& /*edit*/) { return "Set the ground plane"; }
 
 REBAKE_DESCRIBE_EDIT(
     GroundEdit,

@@ -17,5 +17,7 @@ template <>
 const EditType& edit_type<GroundEdit>();
 
 Outcome apply(const Scene& scene, const GroundEdit& edit);
+/// Title of a step: see EditType::title.
+std::string whole_title(const GroundEdit& edit);
 
 }  // namespace rebake

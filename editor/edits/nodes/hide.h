@@ -7,6 +7,7 @@ namespace rebake {
 /// Hides a node and its children: they are neither drawn nor exported, but saved.
 struct Hide {
   static constexpr const char* op = "hide";
+  static constexpr const char* done = "Hid";
   NodeRef node;
 };
 template <>

@@ -1,6 +1,6 @@
 #include "editor/edits/nodes/import.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 #include <fmt/format.h>
 
@@ -45,6 +45,8 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
     report.lines.push_back(fmt::format("warning: {}: {}", edit.path, assumption));
   return {std::move(result), std::move(report)};
 }
+
+std::string whole_title(const Import& edit) { return "Imported " + folder_title(edit.path); }
 
 REBAKE_DESCRIBE_EDIT(
     Import, "Reads a MobileNeRF folder or a Rebake scene into the scene.", (auto& edit, auto& visit) {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "editor/edits/describe.h"
-#include "mesh_ops/formats/environment_map.h"
+#include "editor/edits/describe_edit.h"
+#include "mesh_ops/formats/images/environment_map.h"
 
 namespace rebake {
 
@@ -120,6 +120,11 @@ LightEdit light_edit(const SceneLight& light) {
   if (light.match) edit.effects.emplace_back("match");
   if (edit.effects.empty()) edit.effects = {"none"};
   return edit;
+}
+
+std::string whole_title(const LightEdit& edit) {
+  if (edit.light_source() == "picture") return "Light from " + std::filesystem::path(edit.picture).filename().string();
+  return edit.effects == std::vector<std::string>{"none"} ? "Light stays as baked" : "Light follows edits";
 }
 
 REBAKE_DESCRIBE_EDIT(

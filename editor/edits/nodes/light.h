@@ -27,5 +27,7 @@ Scene apply(const Scene& scene, const LightEdit& edit);
 
 /// The edit that sets a scene's light to `light`.
 LightEdit light_edit(const SceneLight& light);
+/// Title of a step: see EditType::title.
+std::string whole_title(const LightEdit& edit);
 
 }  // namespace rebake

@@ -7,6 +7,7 @@ namespace rebake {
 /// Protects a node and its children from edits.
 struct Lock {
   static constexpr const char* op = "lock";
+  static constexpr const char* done = "Locked";
   NodeRef node;
 };
 template <>

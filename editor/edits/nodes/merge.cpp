@@ -1,8 +1,8 @@
 #include "editor/edits/nodes/merge.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "mesh_ops/base/polar.h"
-#include "mesh_ops/features/atlas.h"
+#include "mesh_ops/features/atlas/atlas.h"
 
 #include <fmt/format.h>
 

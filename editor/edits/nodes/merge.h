@@ -8,6 +8,8 @@ namespace rebake {
 /// original object.
 struct Merge {
   static constexpr const char* op = "merge";
+  static constexpr const char* done = "Merged";
+  static constexpr bool makes_nodes = true;
   std::vector<NodeRef> nodes;  ///< two or more, in drawing order
   std::string as;              ///< name of the result; empty: that of the first node
 };

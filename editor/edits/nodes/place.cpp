@@ -1,6 +1,6 @@
 #include "editor/edits/nodes/place.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "mesh_ops/base/polar.h"
 
 namespace rebake {

@@ -20,6 +20,7 @@ Placement placement_of(const Affine& to_parent);
 /// must be given.
 struct Place {
   static constexpr const char* op = "place";
+  static constexpr const char* done = "Placed";
   NodeRef node;
   std::optional<Vec3> position;
   std::optional<Rotation> rotation;

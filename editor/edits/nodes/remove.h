@@ -7,6 +7,7 @@ namespace rebake {
 /// Removes a node and its children from the scene.
 struct Remove {
   static constexpr const char* op = "remove";
+  static constexpr const char* done = "Removed";
   NodeRef node;
 };
 template <>

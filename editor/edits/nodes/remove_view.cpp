@@ -1,6 +1,6 @@
 #include "editor/edits/nodes/remove_view.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "editor/edits/stored_view.h"
 
 namespace rebake {
@@ -11,6 +11,8 @@ Scene apply(const Scene& scene, const RemoveView& edit) {
   result.views.erase(edit.name);
   return result;
 }
+
+std::string whole_title(const RemoveView& edit) { return "Removed the view \"" + edit.name + "\""; }
 
 REBAKE_DESCRIBE_EDIT(
     RemoveView, "Removes a stored view.",

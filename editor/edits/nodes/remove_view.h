@@ -13,5 +13,7 @@ template <>
 const EditType& edit_type<RemoveView>();
 
 Scene apply(const Scene& scene, const RemoveView& edit);
+/// Title of a step: see EditType::title.
+std::string whole_title(const RemoveView& edit);
 
 }  // namespace rebake

@@ -1,6 +1,6 @@
 #include "editor/edits/nodes/rename.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 
@@ -12,6 +12,8 @@ Scene apply(const Scene& scene, const Rename& edit) {
     throw FieldError("name", "\"" + edit.name + "\" is already the name of another node; choose another name");
   return with_changed(scene, edit.node.id, [&](Node& node) { node.name = edit.name; });
 }
+
+std::string whole_title(const Rename& edit) { return "Renamed to \"" + edit.name + "\""; }
 
 REBAKE_DESCRIBE_EDIT(
     Rename, "Renames a node.", (auto& edit, auto& visit) {

@@ -14,5 +14,7 @@ template <>
 const EditType& edit_type<Rename>();
 
 Scene apply(const Scene& scene, const Rename& edit);
+/// Title of a step: see EditType::title.
+std::string whole_title(const Rename& edit);
 
 }  // namespace rebake

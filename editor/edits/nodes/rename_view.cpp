@@ -1,6 +1,6 @@
 #include "editor/edits/nodes/rename_view.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "editor/edits/stored_view.h"
 
 namespace rebake {
@@ -14,6 +14,10 @@ Scene apply(const Scene& scene, const RenameView& edit) {
   result.views.erase(edit.name);
   result.views[edit.to] = camera;
   return result;
+}
+
+std::string whole_title(const RenameView& edit) {
+  return "Renamed the view \"" + edit.name + "\" to \"" + edit.to + "\"";
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -14,5 +14,7 @@ template <>
 const EditType& edit_type<RenameView>();
 
 Scene apply(const Scene& scene, const RenameView& edit);
+/// Title of a step: see EditType::title.
+std::string whole_title(const RenameView& edit);
 
 }  // namespace rebake

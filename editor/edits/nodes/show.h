@@ -7,6 +7,7 @@ namespace rebake {
 /// Shows a hidden node; it stays invisible inside a hidden group.
 struct Show {
   static constexpr const char* op = "show";
+  static constexpr const char* done = "Showed";
   NodeRef node;
 };
 template <>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "mesh_ops/base/polar.h"
 
 namespace rebake {
@@ -64,6 +64,11 @@ Scene apply(const Scene& scene, const Transform& edit) {
   });
   check_subtree(result, edit.node.id);
   return result;
+}
+
+std::string done_words(const Transform& edit) {
+  const bool turns = !edit.rotate.matrix().isIdentity(0), scales = edit.scale.value != Vec3::Ones();
+  return turns && !scales ? "Rotated" : scales && !turns ? "Scaled" : scales ? "Rotated and scaled" : "Moved";
 }
 
 REBAKE_DESCRIBE_EDIT(

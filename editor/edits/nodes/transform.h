@@ -7,6 +7,9 @@ namespace rebake {
 /// Scales, rotates and translates, in this order, a node or its selected triangles about a pivot in world space.
 struct Transform {
   static constexpr const char* op = "transform";
+  static constexpr AdjustableField adjustable[] = {{"translate", "Move", AdjustableField::Kind::point},
+                                                   {"rotate", "Rotate", AdjustableField::Kind::turn},
+                                                   {"scale", "Scale", AdjustableField::Kind::factors}};
   NodeRef node;
   bool selection = false;  ///< only the selected triangles
   Vec3 translate{0, 0, 0};
@@ -19,5 +22,7 @@ template <>
 const EditType& edit_type<Transform>();
 
 Scene apply(const Scene& scene, const Transform& edit);
+/// The past tense for titles of steps: see EditType::done.
+std::string done_words(const Transform& edit);
 
 }  // namespace rebake

@@ -7,6 +7,7 @@ namespace rebake {
 /// Unlocks a node, so that edits may change it again.
 struct Unlock {
   static constexpr const char* op = "unlock";
+  static constexpr const char* done = "Unlocked";
   NodeRef node;
 };
 template <>

@@ -1,6 +1,6 @@
 #include "editor/edits/nodes/view.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 
@@ -10,6 +10,8 @@ Scene apply(const Scene& scene, const StoreView& edit) {
   result.views[edit.name] = edit.camera;
   return result;
 }
+
+std::string whole_title(const StoreView& edit) { return "Stored the view \"" + edit.name + "\""; }
 
 REBAKE_DESCRIBE_EDIT(
     StoreView, "Stores a camera as a named view.", (auto& edit, auto& visit) {

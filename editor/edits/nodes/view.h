@@ -14,5 +14,7 @@ template <>
 const EditType& edit_type<StoreView>();
 
 Scene apply(const Scene& scene, const StoreView& edit);
+/// Title of a step: see EditType::title.
+std::string whole_title(const StoreView& edit);
 
 }  // namespace rebake

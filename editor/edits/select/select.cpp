@@ -1,6 +1,6 @@
 #include "editor/edits/select/select.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 #include <fmt/format.h>
 

@@ -9,6 +9,7 @@ namespace rebake {
 struct SelectConnected {
   static constexpr const char* op = "select_connected";
   static constexpr bool selects = true;
+  static constexpr bool needs_selection = true;
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   std::optional<Vec3> point;    ///< in world space; nothing: starts from the present selection
   ConnectivityFields joining;

@@ -1,6 +1,6 @@
 #include "editor/edits/select/select_floaters.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "mesh_ops/index/index.h"
 
 namespace rebake {

@@ -1,6 +1,6 @@
 #include "editor/edits/select/select_folded.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "mesh_ops/deform/deform_object.h"
 
 namespace rebake {

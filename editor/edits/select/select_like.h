@@ -9,6 +9,7 @@ namespace rebake {
 struct SelectLike {
   static constexpr const char* op = "select_like";
   static constexpr bool selects = true;
+  static constexpr AdjustableField adjustable[] = {{"color", "Tolerance", AdjustableField::Kind::factor}};
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   std::optional<Vec3> point;    ///< in world space; nothing: the present selection is the reference
   std::optional<double> color, features, opacity, size, orientation;  ///< tolerances, see LikenessBounds

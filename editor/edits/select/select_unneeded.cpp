@@ -1,6 +1,6 @@
 #include "editor/edits/select/select_unneeded.h"
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "editor/edits/stored_view.h"
 
 #include <fmt/format.h>

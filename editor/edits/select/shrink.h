@@ -8,6 +8,8 @@ namespace rebake {
 struct Shrink {
   static constexpr const char* op = "shrink";
   static constexpr bool selects = true;
+  static constexpr bool needs_selection = true;
+  static constexpr AdjustableField adjustable[] = {{"steps", "Steps", AdjustableField::Kind::number}};
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   int steps = 1;                ///< number of rings
   WeldingField welding;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
 namespace rebake {
 

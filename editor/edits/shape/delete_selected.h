@@ -7,6 +7,7 @@ namespace rebake {
 /// Removes the selected triangles, and nodes that lose all their triangles and have no children.
 struct DeleteSelected {
   static constexpr const char* op = "delete";
+  static constexpr bool needs_selection = true;
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
 };
 template <>

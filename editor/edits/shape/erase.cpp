@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 
-#include "mesh_ops/features/erase.h"
+#include "mesh_ops/features/atlas/erase.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/select/regions.h"
 

@@ -7,6 +7,8 @@ namespace rebake {
 /// Moves the selected triangles of a node into a new node after it.
 struct Separate {
   static constexpr const char* op = "separate";
+  static constexpr bool needs_selection = true;
+  static constexpr bool makes_nodes = true;
   NodeRef node;
   std::string as;  ///< name of the new node; empty: the node's name with a number
 };

@@ -8,12 +8,12 @@
 #include <numeric>
 #include <optional>
 
-#include "editor/edits/describe.h"
+#include "editor/edits/describe_edit.h"
 #include "editor/edits/select/selecting.h"
 #include "editor/edits/stored_view.h"
-#include "mesh_ops/features/atlas.h"
-#include "mesh_ops/features/near_duplicates.h"
-#include "mesh_ops/features/slim.h"
+#include "mesh_ops/features/atlas/atlas.h"
+#include "mesh_ops/features/atlas/near_duplicates.h"
+#include "mesh_ops/features/atlas/slim.h"
 #include "mesh_ops/select/duplicates.h"
 
 namespace rebake {

@@ -2,8 +2,8 @@
 #include <imgui.h>
 
 #include <Eigen/Geometry>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <utility>
 
 #include "editor/gui/panels/euler.h"
@@ -19,37 +19,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A field of an edit that can be adjusted after the edit.
-struct Adjustable {
-  enum class Kind { number, length, degrees, factor, point, factors, turn };
-  const char* field;
-  const char* label;
-  Kind kind;
-};
-using Kind = Adjustable::Kind;
-
-// Adjustable fields by the edit's op. Edits without an entry cannot be adjusted.
-const std::map<std::string, std::vector<Adjustable>>& adjustable_edits() {
-  static const std::vector<Adjustable> limits = {
-      {"from", "Start", Kind::length}, {"to", "End", Kind::length}, {"falloff", "Falloff", Kind::length}};
-  const auto with_limits = [](std::vector<Adjustable> list) {
-    list.insert(list.end(), limits.begin(), limits.end());
-    return list;
-  };
-  static const std::map<std::string, std::vector<Adjustable>> table = {
-      {"bend", with_limits({{"degrees", "Angle", Kind::degrees}})},
-      {"twist", with_limits({{"degrees", "Angle", Kind::degrees}})},
-      {"taper", with_limits({{"factor", "Factor", Kind::factor}})},
-      {"stretch", with_limits({{"factor", "Factor", Kind::factor}})},
-      {"cage", {{"falloff", "Falloff", Kind::length}}},
-      {"transform",
-       {{"translate", "Move", Kind::point}, {"rotate", "Rotate", Kind::turn}, {"scale", "Scale", Kind::factors}}},
-      {"select_like", {{"color", "Tolerance", Kind::factor}}},
-      {"grow", {{"steps", "Steps", Kind::number}}},
-      {"shrink", {{"steps", "Steps", Kind::number}}},
-  };
-  return table;
-}
+using Kind = AdjustableField::Kind;
 
 Vec3 point_of(const json& value, double otherwise) {
   if (value.is_number()) return Vec3::Constant(value.get<double>());
@@ -58,7 +28,7 @@ Vec3 point_of(const json& value, double otherwise) {
 }
 
 // Draws number fields for a field and writes changes to `object`. `unit`: change of a length per pixel of drag.
-ui::Changed draw_values(const Adjustable& field, json& object, double unit) {
+ui::Changed draw_values(const AdjustableField& field, json& object, double unit) {
   const json held = object.contains(field.field) ? object.at(field.field) : json();
   if (field.kind == Kind::point || field.kind == Kind::factors || field.kind == Kind::turn) {
     Vec3 value = point_of(held, field.kind == Kind::factors ? 1 : 0);
@@ -106,7 +76,7 @@ ui::Changed draw_values(const Adjustable& field, json& object, double unit) {
 }
 
 // Draws a labelled field and writes changes to `object`.
-ui::Changed draw_field(const Adjustable& field, json& object, double unit) {
+ui::Changed draw_field(const AdjustableField& field, json& object, double unit) {
   ui::label(field.label);
   const announce::Part part(field.field);
   ImGui::PushID(field.label);
@@ -122,8 +92,8 @@ void AdjustPanel::draw(EditorContext& editor, const ImVec2& corner, const ImVec2
   if (now.steps_done == 0 || !now.before_last) return;
   const std::size_t edits = now.steps[now.steps_done - 1].edits;
   const Edit& last = now.done.back();
-  const auto fields = adjustable_edits().find(last.type().op);
-  if (fields == adjustable_edits().end()) return;
+  const std::span<const AdjustableField> fields = last.type().adjustable;
+  if (fields.empty()) return;
   for (std::size_t k = 0; k < edits; ++k)
     if (&now.done[now.done.size() - 1 - k].type() != &last.type()) return;
   if ((!of_ || of_->value() != last.value()) && !changing_) {
@@ -152,7 +122,7 @@ void AdjustPanel::draw(EditorContext& editor, const ImVec2& corner, const ImVec2
     const double size =
         std::max(1e-300, world_bounds(now.scene).isEmpty() ? 1 : world_bounds(now.scene).diagonal().norm());
     const double unit = std::pow(10, std::floor(std::log10(size)) - 2);
-    for (const Adjustable& field : fields->second)
+    for (const AdjustableField& field : fields)
       if (const ui::Changed one = draw_field(field, object_, unit); one != ui::Changed::nothing) changed = one;
   }
   ImGui::End();
@@ -181,7 +151,7 @@ std::vector<Edit> AdjustPanel::changed_edits(const Snapshot& now, std::size_t ed
   std::vector<Edit> list;
   for (std::size_t k = now.done.size() - edits; k < now.done.size(); ++k) {
     json object = to_json(now.done[k]);
-    for (const Adjustable& field : adjustable_edits().at(now.done[k].type().op))
+    for (const AdjustableField& field : now.done[k].type().adjustable)
       if (object_.contains(field.field)) object[field.field] = object_.at(field.field);
     list.push_back(read_edit(object, *now.before_last));
   }

@@ -46,99 +46,121 @@ std::vector<Choice> choices_of(const Jobs::Costs& costs) {
   return list;
 }
 
-// Plots PSNR in dB (vertical) over frame time in ms (horizontal, logarithmic). A click on a point applies its setting.
-// `same`: the measurement is of the current view.
+// Axes of the chart: PSNR in dB (vertical) over frame time in ms (horizontal, logarithmic).
+class ChartAxes {
+ public:
+  ChartAxes(const std::vector<Choice>& choices, const ImVec2& at, const ImVec2& size) : at_(at), size_(size) {
+    for (const Choice& choice : choices) {
+      min_ms_ = std::min(min_ms_, choice.fastest / 1.2);
+      max_ms_ = std::max(max_ms_, choice.slowest * 1.4);
+      min_db_ = std::min(min_db_, choice.decibels - 3);
+      max_db_ = std::max(max_db_, choice.decibels + 3);
+    }
+  }
+  ImVec2 place(double ms, double decibels) const {
+    const double x = std::log(ms / min_ms_) / std::log(max_ms_ / min_ms_);
+    const double y = (decibels - min_db_) / std::max(1e-9, max_db_ - min_db_);
+    return {at_.x + left_ + static_cast<float>(x) * (size_.x - left_ - right_),
+            at_.y + size_.y - below_ - static_cast<float>(y) * (size_.y - below_ - above_)};
+  }
+  void draw(ImDrawList& list) const {
+    const auto text = [&](const ImVec2& where, const std::string& said, float align) {
+      const ImVec2 extent = ImGui::CalcTextSize(said.c_str());
+      list.AddText({where.x - align * extent.x, where.y - extent.y / 2}, color32(theme().muted), said.c_str());
+    };
+    for (int tens = static_cast<int>(std::ceil(min_db_ / 10)); tens * 10 <= max_db_; ++tens) {
+      const double db = 10.0 * tens;
+      const ImVec2 p = place(min_ms_, db), q = place(max_ms_, db);
+      list.AddLine(p, q, color32(theme().text, 0.12F));
+      text({p.x - px(6), p.y}, fmt::format("{:.0f}", db), 1);
+    }
+    const int last = static_cast<int>(std::floor(std::log10(max_ms_)));
+    for (int power = static_cast<int>(std::floor(std::log10(min_ms_))); power <= last; ++power)
+      for (const double factor : {1.0, 2.0, 5.0}) {
+        const double decade = std::pow(10, power);
+        if (decade * factor < min_ms_ || decade * factor > max_ms_) continue;
+        const ImVec2 p = place(decade * factor, min_db_), q = place(decade * factor, max_db_);
+        list.AddLine(p, q, color32(theme().text, 0.07F));
+        text({p.x, at_.y + size_.y - below_ + px(11)}, fmt::format("{:g} ms", decade * factor), 0.5F);
+      }
+    text({at_.x + px(6), at_.y + px(12)}, "dB", 0);
+  }
+
+ private:
+  ImVec2 at_, size_;
+  float left_ = px(44), below_ = px(30), above_ = px(10), right_ = px(14);
+  double min_ms_ = 1e300, max_ms_ = 0, min_db_ = 1e300, max_db_ = -1e300;
+};
+
+// Draws a point with its name, and an error bar from the fastest to the slowest run. `right`: end of the chart.
+void draw_point(const Choice& choice, const ChartAxes& axes, bool strong, bool now, float right, ImDrawList& list) {
+  const ImVec2 p = axes.place(choice.ms, choice.decibels);
+  announce::point(choice.name, p);
+  const ImU32 ink = color32(choice.samples > 0 ? theme().accent_text : theme().muted);
+  const ImVec2 first = axes.place(choice.fastest, choice.decibels),
+               last_run = axes.place(choice.slowest, choice.decibels);
+  list.AddLine(first, last_run, ink, px(1.5F));
+  for (const ImVec2& end : {first, last_run})
+    list.AddLine({end.x, end.y - px(4)}, {end.x, end.y + px(4)}, ink, px(1.5F));
+  list.AddCircleFilled(p, px(strong ? 7 : 5), color32(now ? theme().accent : theme().panel));
+  list.AddCircle(p, px(strong ? 7 : 5), ink, 0, px(2));
+  // Resolutions are labelled below their points and samples above, since the points are close together.
+  const float name_width = ImGui::CalcTextSize(choice.name.c_str()).x;
+  const bool fits = p.x + px(9) + name_width < right;
+  list.AddText({fits ? p.x + px(9) : p.x - px(9) - name_width, p.y + (choice.samples > 0 ? -px(18) : px(3))},
+               color32(strong ? theme().text : theme().muted), choice.name.c_str());
+}
+
+// Describes the point under the pointer. A click applies its setting. `same`: the measurement is of the current view.
+void point_at(const Choice& choice, ViewState& view, bool same) {
+  if (same) view.marked = choice.worst;
+  ImGui::SetTooltip(
+      "%s: %.1f ms (%.1f to %.1f), %.1f dB, largest error %.0f of 255%s\n%s", choice.name.c_str(), choice.ms,
+      choice.fastest, choice.slowest, choice.decibels, choice.largest, same ? ", circled in the viewport" : "",
+      choice.samples > 0 ? "Click to use this when the view is still." : "Click to use this while the view moves.");
+  if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) return;
+  if (choice.samples > 0)
+    view.samples = choice.samples;
+  else
+    view.moving_share = view.moving_share == choice.share ? 0 : choice.share;
+}
+
+// Plots the choices. `same`: the measurement is of the current view.
 void draw_chart(const std::vector<Choice>& choices, ViewState& view, bool same, const ImVec2& size) {
   const announce::Part part("chart");
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("chart", size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(at, {at.x + size.x, at.y + size.y}, color32(theme().field), px(space::rounding));
-  double min_ms = 1e300, max_ms = 0, min_db = 1e300, max_db = -1e300;
-  for (const Choice& choice : choices) {
-    min_ms = std::min(min_ms, choice.fastest / 1.2);
-    max_ms = std::max(max_ms, choice.slowest * 1.4);
-    min_db = std::min(min_db, choice.decibels - 3);
-    max_db = std::max(max_db, choice.decibels + 3);
-  }
   if (choices.empty()) return;
-  const float left = px(44), below = px(30), above = px(10), right = px(14);
-  const auto place = [&](double ms, double decibels) {
-    const double x = std::log(ms / min_ms) / std::log(max_ms / min_ms);
-    const double y = (decibels - min_db) / std::max(1e-9, max_db - min_db);
-    return ImVec2{at.x + left + static_cast<float>(x) * (size.x - left - right),
-                  at.y + size.y - below - static_cast<float>(y) * (size.y - below - above)};
-  };
-  const auto text = [&](const ImVec2& where, const std::string& said, float align) {
-    const ImVec2 extent = ImGui::CalcTextSize(said.c_str());
-    list.AddText({where.x - align * extent.x, where.y - extent.y / 2}, color32(theme().muted), said.c_str());
-  };
-  for (int tens = static_cast<int>(std::ceil(min_db / 10)); tens * 10 <= max_db; ++tens) {
-    const double db = 10.0 * tens;
-    const ImVec2 p = place(min_ms, db), q = place(max_ms, db);
-    list.AddLine(p, q, color32(theme().text, 0.12F));
-    text({p.x - px(6), p.y}, fmt::format("{:.0f}", db), 1);
-  }
-  const int last = static_cast<int>(std::floor(std::log10(max_ms)));
-  for (int power = static_cast<int>(std::floor(std::log10(min_ms))); power <= last; ++power)
-    for (const double factor : {1.0, 2.0, 5.0}) {
-      const double decade = std::pow(10, power);
-      if (decade * factor < min_ms || decade * factor > max_ms) continue;
-      const ImVec2 p = place(decade * factor, min_db), q = place(decade * factor, max_db);
-      list.AddLine(p, q, color32(theme().text, 0.07F));
-      text({p.x, at.y + size.y - below + px(11)}, fmt::format("{:g} ms", decade * factor), 0.5F);
-    }
-  text({at.x + px(6), at.y + px(12)}, "dB", 0);
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const bool over = ImGui::IsItemHovered();
+  const ChartAxes axes(choices, at, size);
+  axes.draw(list);
   for (const bool samples : {true, false}) {
     std::vector<ImVec2> line;
     for (const Choice& choice : choices)
-      if ((choice.samples > 0) == samples) line.push_back(place(choice.ms, choice.decibels));
+      if ((choice.samples > 0) == samples) line.push_back(axes.place(choice.ms, choice.decibels));
     std::sort(line.begin(), line.end(), [](const ImVec2& a, const ImVec2& b) { return a.x < b.x; });
     list.AddPolyline(line.data(), static_cast<int>(line.size()),
                      color32(samples ? theme().accent_text : theme().muted, 0.6F), 0, px(2));
   }
   // The point nearest to the pointer, within 10 pixels.
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const bool over = ImGui::IsItemHovered();
   const Choice* nearest = nullptr;
   float least = px(10);
   for (const Choice& choice : choices) {
-    const ImVec2 p = place(choice.ms, choice.decibels);
+    const ImVec2 p = axes.place(choice.ms, choice.decibels);
     const float away = std::hypot(mouse.x - p.x, mouse.y - p.y);
     if (!over || away >= least) continue;
     least = away;
     nearest = &choice;
   }
   for (const Choice& choice : choices) {
-    const ImVec2 p = place(choice.ms, choice.decibels);
     const bool now =
         choice.samples > 0 ? choice.samples == view.samples : std::abs(choice.share - view.moving_share) < 0.01;
     const bool hot = nearest == &choice;
-    announce::point(choice.name, p);
-    // Error bar from the fastest to the slowest run.
-    const ImU32 ink = color32(choice.samples > 0 ? theme().accent_text : theme().muted);
-    const ImVec2 first = place(choice.fastest, choice.decibels), last_run = place(choice.slowest, choice.decibels);
-    list.AddLine(first, last_run, ink, px(1.5F));
-    for (const ImVec2& end : {first, last_run})
-      list.AddLine({end.x, end.y - px(4)}, {end.x, end.y + px(4)}, ink, px(1.5F));
-    list.AddCircleFilled(p, px(hot || now ? 7 : 5), color32(now ? theme().accent : theme().panel));
-    list.AddCircle(p, px(hot || now ? 7 : 5), ink, 0, px(2));
-    // Resolutions are labelled below their points and samples above, since the points are close together.
-    const float name_width = ImGui::CalcTextSize(choice.name.c_str()).x;
-    const bool fits = p.x + px(9) + name_width < at.x + size.x;
-    list.AddText({fits ? p.x + px(9) : p.x - px(9) - name_width, p.y + (choice.samples > 0 ? -px(18) : px(3))},
-                 color32(now || hot ? theme().text : theme().muted), choice.name.c_str());
-    if (!hot) continue;
-    if (same) view.marked = choice.worst;
-    ImGui::SetTooltip(
-        "%s: %.1f ms (%.1f to %.1f), %.1f dB, largest error %.0f of 255%s\n%s", choice.name.c_str(), choice.ms,
-        choice.fastest, choice.slowest, choice.decibels, choice.largest, same ? ", circled in the viewport" : "",
-        choice.samples > 0 ? "Click to use this when the view is still." : "Click to use this while the view moves.");
-    if (!ImGui::IsMouseClicked(ImGuiMouseButton_Left)) continue;
-    if (choice.samples > 0)
-      view.samples = choice.samples;
-    else
-      view.moving_share = view.moving_share == choice.share ? 0 : choice.share;
+    draw_point(choice, axes, hot || now, now, at.x + size.x, list);
+    if (hot) point_at(choice, view, same);
   }
 }
 

@@ -12,8 +12,8 @@
 #include "editor/edits/support.h"
 #include "editor/fields/field_info.h"
 #include "editor/gui/panels/panels.h"
-#include "editor/gui/tools/expression.h"
 #include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/expression.h"
 #include "editor/gui/ui/widgets.h"
 
 namespace rebake {
@@ -26,12 +26,6 @@ const EditType* type_named(const std::string& op) {
   for (const EditType* type : edit_types())
     if (op == type->op) return type;
   return nullptr;
-}
-
-bool needs_selection(const std::string& op) {
-  for (const char* one : {Grow::op, Shrink::op, SelectConnected::op, DeleteSelected::op, Separate::op})
-    if (op == one) return true;
-  return false;
 }
 
 const FieldInfo* field_named(const std::vector<FieldInfo>& fields, const char* name) {
@@ -75,7 +69,7 @@ std::vector<json> EditForm::lines(const EditorContext& editor) const {
   const FieldInfo* const node = field_named(fields, "node");
   if (node == nullptr || node->type.kind != FieldKind::node || values_.contains("node")) return {line};
   const bool deforms = field_named(fields, "selection") != nullptr;
-  const bool selection = needs_selection(op_) || (deforms && values_.value("selection", false));
+  const bool selection = type_named(op_)->needs_selection || (deforms && values_.value("selection", false));
   const auto with_node = [&](NodeId id) {
     json one = line;
     one["node"] = static_cast<std::uint64_t>(id);
@@ -133,6 +127,97 @@ void EditForm::draw_count(const EditorContext& editor) const {
   announce::item("count: " + text);
 }
 
+namespace {
+
+// "select_like" → "Select like".
+std::string words_of(const std::string& name) {
+  std::string words = name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
+
+void draw_flag(const FieldInfo& field, json& values) {
+  const char* name = field.name.c_str();
+  bool value = values.contains(name) ? values[name].get<bool>() : field.initial == "true";
+  if (ui::toggle("##value", value)) values[name] = value;
+}
+
+void draw_node_choice(const EditorContext& editor, const FieldInfo& field, json& values) {
+  const char* name = field.name.c_str();
+  const std::uint64_t chosen = values.value(name, std::uint64_t{0});
+  const NodePtr node = find(editor.scene(), static_cast<NodeId>(chosen));
+  const std::string scope = field.name == "node" ? "Scope: " + editor.scope_words() : "(none)";
+  if (ImGui::BeginCombo("##value", node ? node->name.c_str() : scope.c_str())) {
+    if ((!field.required || field.name == "node") && ImGui::Selectable(scope.c_str(), chosen == 0)) values.erase(name);
+    for (const PlacedNode& placed : placed_nodes(editor.scene()))
+      if (ImGui::Selectable(placed.node->name.c_str(), placed.node->id == static_cast<NodeId>(chosen)))
+        values[name] = static_cast<std::uint64_t>(placed.node->id);
+    ImGui::EndCombo();
+  }
+}
+
+void draw_choice(const FieldInfo& field, json& values) {
+  const char* name = field.name.c_str();
+  const std::string initial = field.initial.size() > 2 ? field.initial.substr(1, field.initial.size() - 2) : "";
+  const std::string chosen = values.value(name, initial);
+  if (ImGui::BeginCombo("##value", chosen.c_str())) {
+    for (const std::string& word : field.type.choices)
+      if (ImGui::Selectable(word.c_str(), word == chosen)) values[name] = word;
+    ImGui::EndCombo();
+  }
+}
+
+// A text field for a value that may be an expression or JSON. `text`: the text as typed.
+void draw_text(const FieldInfo& field, std::string& text, json& values) {
+  const char* name = field.name.c_str();
+  if (ImGui::InputTextWithHint("##value", field.initial.empty() ? field.type.words.c_str() : field.initial.c_str(),
+                               &text)) {
+    if (text.empty()) {
+      values.erase(name);
+    } else if (field.type.kind == FieldKind::text) {
+      values[name] = text;
+    } else if (const auto number = evaluated(text); number) {
+      values[name] =
+          field.type.kind == FieldKind::whole_number && std::abs(*number) < 1e15 && *number == std::round(*number)
+              ? json(static_cast<std::int64_t>(*number))
+              : json(*number);
+    } else {
+      // Text that is not JSON stays a string; read_edit() reports the error.
+      const json read = json::parse(text, nullptr, false);
+      values[name] = read.is_discarded() ? json(text) : read;
+    }
+  }
+}
+
+}  // namespace
+
+// Draws a labelled input for each field.
+void EditForm::draw_fields(const EditorContext& editor, const std::vector<FieldInfo>& fields) {
+  for (const FieldInfo& field : fields) {
+    ImGui::PushID(field.name.c_str());
+    const std::string words = words_of(field.name);
+    ui::label(words.c_str());
+    switch (field.type.kind) {
+      case FieldKind::flag:
+        draw_flag(field, values_);
+        break;
+      case FieldKind::node:
+        draw_node_choice(editor, field, values_);
+        break;
+      case FieldKind::choice:
+        draw_choice(field, values_);
+        break;
+      default:
+        draw_text(field, texts_[field.name], values_);
+    }
+    announce::item(field.name);
+    ui::tip(words, field.required ? "needed" : "", field.help + " (" + notation_of(field) + ")");
+    if (problem_.find("\"" + field.name + "\"") != std::string::npos) ui::wrapped(problem_, theme().danger);
+    ImGui::PopID();
+  }
+}
+
 void EditForm::draw(EditorContext& editor, float right) {
   if (editor.dialogs.form.empty()) {
     // Show the preview until the applied edit is done.
@@ -147,68 +232,12 @@ void EditForm::draw(EditorContext& editor, float right) {
   ImGui::SetNextWindowPos({right - px(10), px(40)}, ImGuiCond_Appearing, {1, 0});
   // The height follows the content, so that no button is cut off.
   ImGui::SetNextWindowSizeConstraints({px(440), 0}, {px(440), screen.y - px(60)});
-  std::string title = op_;
-  std::replace(title.begin(), title.end(), '_', ' ');
-  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  ImGui::Begin((title + "###form").c_str(), &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::Begin((words_of(op_) + "###form").c_str(), &open,
+               ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize);
   const announce::Part part("form");
   const std::vector<FieldInfo> fields = type_named(op_)->fields();
   ui::muted(type_named(op_)->help);
-  for (const FieldInfo& field : fields) {
-    ImGui::PushID(field.name.c_str());
-    const char* name = field.name.c_str();
-    std::string words = field.name;
-    std::replace(words.begin(), words.end(), '_', ' ');
-    words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-    ui::label(words.c_str());
-    if (field.type.kind == FieldKind::flag) {
-      bool value = values_.contains(name) ? values_[name].get<bool>() : field.initial == "true";
-      if (ui::toggle("##value", value)) values_[name] = value;
-    } else if (field.type.kind == FieldKind::node) {
-      const std::uint64_t chosen = values_.value(name, std::uint64_t{0});
-      const NodePtr node = find(editor.scene(), static_cast<NodeId>(chosen));
-      const std::string scope = field.name == "node" ? "Scope: " + editor.scope_words() : "(none)";
-      if (ImGui::BeginCombo("##value", node ? node->name.c_str() : scope.c_str())) {
-        if ((!field.required || field.name == "node") && ImGui::Selectable(scope.c_str(), chosen == 0))
-          values_.erase(name);
-        for (const PlacedNode& placed : placed_nodes(editor.scene()))
-          if (ImGui::Selectable(placed.node->name.c_str(), placed.node->id == static_cast<NodeId>(chosen)))
-            values_[name] = static_cast<std::uint64_t>(placed.node->id);
-        ImGui::EndCombo();
-      }
-    } else if (field.type.kind == FieldKind::choice) {
-      const std::string initial = field.initial.size() > 2 ? field.initial.substr(1, field.initial.size() - 2) : "";
-      const std::string chosen = values_.value(name, initial);
-      if (ImGui::BeginCombo("##value", chosen.c_str())) {
-        for (const std::string& word : field.type.choices)
-          if (ImGui::Selectable(word.c_str(), word == chosen)) values_[name] = word;
-        ImGui::EndCombo();
-      }
-    } else {
-      std::string& text = texts_[name];
-      if (ImGui::InputTextWithHint("##value", field.initial.empty() ? field.type.words.c_str() : field.initial.c_str(),
-                                   &text)) {
-        if (text.empty()) {
-          values_.erase(name);
-        } else if (field.type.kind == FieldKind::text) {
-          values_[name] = text;
-        } else if (const auto number = evaluated(text); number) {
-          values_[name] =
-              field.type.kind == FieldKind::whole_number && std::abs(*number) < 1e15 && *number == std::round(*number)
-                  ? json(static_cast<std::int64_t>(*number))
-                  : json(*number);
-        } else {
-          // Text that is not JSON stays a string; read_edit() reports the error.
-          const json read = json::parse(text, nullptr, false);
-          values_[name] = read.is_discarded() ? json(text) : read;
-        }
-      }
-    }
-    announce::item(field.name);
-    ui::tip(words, field.required ? "needed" : "", field.help + " (" + notation_of(field) + ")");
-    if (problem_.find("\"" + field.name + "\"") != std::string::npos) ui::wrapped(problem_, theme().danger);
-    ImGui::PopID();
-  }
+  draw_fields(editor, fields);
   const bool said = std::any_of(fields.begin(), fields.end(), [&](const FieldInfo& field) {
     return problem_.find("\"" + field.name + "\"") != std::string::npos;
   });

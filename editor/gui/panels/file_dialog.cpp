@@ -14,12 +14,12 @@
 #include "editor/edits/nodes/light.h"
 #include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
+#include "editor/gui/platform/child_process.h"
+#include "editor/gui/state/navigation.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
-#include "editor/gui/view/navigation.h"
-#include "editor/gui/window/child_process.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake {
@@ -285,15 +285,10 @@ int FileDialog::on_key(ImGuiInputTextCallbackData* data) {
   return 0;
 }
 
-void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
-  take_answer(editor);
-  if (editor.dialogs.path == FileDialogPurpose::none) {
-    asked_ = FileDialogPurpose::none;
-    desktop_.reset();
-    return;
-  }
-  const Question& question = question_of(editor.dialogs.path);
-  if (asked_ != editor.dialogs.path) begin(editor);
+namespace {
+
+// Opens the dialog's popup in the middle of the window. Returns false if it is not drawn.
+bool begin_popup(const std::string& title) {
   // Another dialog may have closed the popup.
   if (!ImGui::IsPopupOpen("###path")) ImGui::OpenPopup("###path");
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -301,74 +296,91 @@ void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
   ImGui::SetNextWindowSize(size);
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(18), px(16)});
-  const bool begun = ImGui::BeginPopupModal((std::string(question.title) + "###path").c_str(), nullptr,
+  const bool begun = ImGui::BeginPopupModal((title + "###path").c_str(), nullptr,
                                             ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                                 ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar();
-  if (!begun) return;
-  const announce::Part part("dialog");
-  ImGui::PushFont(fonts().heading);
-  ImGui::TextUnformatted(question.title);
-  ImGui::PopFont();
-  ImGui::SameLine(0, px(12));
-  ImGui::TextDisabled("%s", question.hint);
-  if (ImGui::IsWindowAppearing() || std::exchange(refocus_path_, false)) ImGui::SetKeyboardFocusHere();
-  ImGui::SetNextItemWidth(-1);
-  bool done = ImGui::InputText("##text", &path_,
-                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
-                                   ImGuiInputTextFlags_CallbackHistory,
-                               on_key, this);
-  announce::item("path");
-  const bool exports = editor.dialogs.path == FileDialogPurpose::export_folder;
-  const bool opens = editor.dialogs.path == FileDialogPurpose::open, film = makes_film(editor.dialogs.path);
-  if (list_.chosen().size() > 1 && !list_.chosen().contains(path_)) list_.clear_choice();
-  const fs::path typed(path_);
-  std::error_code error;
-  const fs::path folder = typed.parent_path();  // "a/b" for "a/b/"
-  const bool pictures = film || editor.dialogs.path == FileDialogPurpose::screenshot;
-  const std::string ending = film && video_ ? ".mp4" : question.ending;
-  // If all top-level nodes are picked, the option would change nothing.
-  const bool offers_picked = (pictures || editor.dialogs.path == FileDialogPurpose::export_folder) &&
-                             !editor.active.empty() && editor.active_tops().size() < editor.scene().roots.size();
-  only_picked_ = only_picked_ && offers_picked;
-  const std::vector<std::string> lost = editor.dialogs.path == FileDialogPurpose::export_folder
-                                            ? export_losses(with_only(editor.scene(), wanted_nodes(editor)), plain_)
-                                            : std::vector<std::string>{};
-  float below = ImGui::GetFrameHeightWithSpacing() *
-                    (1.0F + (pictures ? 1.0F : 0.0F) + (offers_picked ? 1.0F : 0.0F) + (exports ? 1.0F : 0.0F)) +
-                ImGui::GetTextLineHeightWithSpacing();
-  for (const std::string& line : lost)
-    below += ImGui::CalcTextSize(("•  " + line).c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y +
-             ImGui::GetStyle().ItemSpacing.y;
-  const float high = std::max(px(80), ImGui::GetContentRegionAvail().y - below);
-  ImGui::PushStyleColor(ImGuiCol_ChildBg, color(theme().field));
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(6)});
-  ImGui::BeginChild("places", {px(180), high}, true);
-  for (const Bookmark& place : bookmarks(editor.settings)) {
+  return begun;
+}
+
+void draw_places(const Settings& settings, std::string& path, float height) {
+  ImGui::BeginChild("places", {px(180), height}, true);
+  for (const Bookmark& place : bookmarks(settings)) {
     if (ImGui::Selectable(fmt::format("{}  {}", place.icon, ui::shortened(place.name, px(130))).c_str()))
-      path_ = place.path.string() + "/";
+      path = place.path.string() + "/";
     announce::item(place.name);
     ui::tip(place.path.string());
   }
   ImGui::EndChild();
+}
+
+}  // namespace
+
+FileDialog::Form FileDialog::form_for(const EditorContext& editor) {
+  Form form;
+  form.exports = editor.dialogs.path == FileDialogPurpose::export_folder;
+  form.opens = editor.dialogs.path == FileDialogPurpose::open;
+  form.film = makes_film(editor.dialogs.path);
+  form.pictures = form.film || editor.dialogs.path == FileDialogPurpose::screenshot;
+  form.writes = !reads(editor.dialogs.path);
+  form.ending = form.film && video_ ? ".mp4" : question_of(editor.dialogs.path).ending;
+  // If all top-level nodes are picked, the option would change nothing.
+  form.offers_picked = (form.pictures || form.exports) && !editor.active.empty() &&
+                       editor.active_tops().size() < editor.scene().roots.size();
+  only_picked_ = only_picked_ && form.offers_picked;
+  if (form.exports) form.lost = export_losses(with_only(editor.scene(), wanted_nodes(editor)), plain_);
+  return form;
+}
+
+// Draws the path field. Returns whether the user confirmed it.
+bool FileDialog::draw_path() {
+  if (ImGui::IsWindowAppearing() || std::exchange(refocus_path_, false)) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(-1);
+  const bool done = ImGui::InputText("##text", &path_,
+                                     ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+                                         ImGuiInputTextFlags_CallbackHistory,
+                                     on_key, this);
+  announce::item("path");
+  if (list_.chosen().size() > 1 && !list_.chosen().contains(path_)) list_.clear_choice();
+  return done;
+}
+
+// Draws bookmarks and the folder's entries. Returns whether the user chose one by a double click.
+bool FileDialog::draw_entries(const EditorContext& editor, Thumbnails& thumbnails, const Form& form) {
+  const auto rows = 1.0F + static_cast<float>(int{form.pictures} + int{form.offers_picked} + int{form.exports});
+  float below = ImGui::GetFrameHeightWithSpacing() * rows + ImGui::GetTextLineHeightWithSpacing();
+  for (const std::string& line : form.lost)
+    below += ImGui::CalcTextSize(("•  " + line).c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y +
+             ImGui::GetStyle().ItemSpacing.y;
+  const float height = std::max(px(80), ImGui::GetContentRegionAvail().y - below);
+  const fs::path typed(path_);
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, color(theme().field));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(6)});
+  draw_places(editor.settings, path_, height);
   ImGui::SameLine();
-  ImGui::BeginChild("entries", {0, high}, true);
-  list_.look_at(folder, ending.empty() ? question.listed : ending);
+  ImGui::BeginChild("entries", {0, height}, true);
+  // "a/b" for "a/b/"
+  list_.look_at(typed.parent_path(), form.ending.empty() ? question_of(editor.dialogs.path).listed : form.ending);
   // Filter only when reading: a path to be written is usually a new name.
-  list_.filter(reads(editor.dialogs.path) ? typed.filename().string() : "");
-  if (const FolderList::Taken taken = list_.draw(thumbnails, opens, opens); !taken.path.empty()) {
+  list_.filter(form.writes ? "" : typed.filename().string());
+  bool done = false;
+  if (const FolderList::Taken taken = list_.draw(thumbnails, form.opens, form.opens); !taken.path.empty()) {
     path_ = taken.path.string();
-    done = done || taken.at_once;
+    done = taken.at_once;
   }
   ImGui::EndChild();
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
-  if (offers_picked) {
+  return done;
+}
+
+void FileDialog::draw_export_options(EditorContext& editor, const Form& form) {
+  if (form.offers_picked) {
     ui::toggle("Only the picked nodes##only-picked", only_picked_);
     ImGui::SameLine();
     ImGui::TextDisabled("%s", editor.scope_words().c_str());
   }
-  if (exports) {
+  if (form.exports) {
     ui::toggle("One plain folder##plain", plain_);
     ui::tip("One plain folder", "",
             "Merges all objects into one folder with one decoder that any MobileNeRF viewer can show.");
@@ -379,38 +391,96 @@ void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
       ui::hint(preview_.words());
     }
   }
-  for (const std::string& line : lost) ui::muted("•  " + line);
-  if (pictures) {
-    const auto pixels = [](const char* label, int& value, int least, int most) {
-      ImGui::SetNextItemWidth(px(90));
-      ImGui::InputInt(label, &value, 0);
-      announce::item(label);
-      value = std::clamp(value, least, most);
-    };
-    pixels("wide", width_, 16, 8192);
-    ImGui::SameLine();
-    pixels("high, pixels", height_, 16, 8192);
-    if (film) {
-      ImGui::SameLine();
-      pixels("pictures", pictures_, 2, 1000);
-      ImGui::SameLine();
-      const bool can = !program_path("ffmpeg").empty();
-      ImGui::BeginDisabled(!can);
-      const bool was = video_;
-      ui::toggle("Video##video", video_);
-      ImGui::EndDisabled();
-      ui::tip("Video", "",
-              can ? fmt::format("Writes an MP4 file with {} frames per second.", CameraAnimation::rate)
-                  : std::string("Needs ffmpeg. Install it to write videos."));
-      if (was && !video_ && path_.ends_with(".mp4")) path_.resize(path_.size() - 4);
-    }
+  for (const std::string& line : form.lost) ui::muted("•  " + line);
+}
+
+void FileDialog::draw_picture_options(const Form& form) {
+  const auto pixels = [](const char* label, int& value, int least, int most) {
+    ImGui::SetNextItemWidth(px(90));
+    ImGui::InputInt(label, &value, 0);
+    announce::item(label);
+    value = std::clamp(value, least, most);
+  };
+  pixels("wide", width_, 16, 8192);
+  ImGui::SameLine();
+  pixels("high, pixels", height_, 16, 8192);
+  if (!form.film) return;
+  ImGui::SameLine();
+  pixels("pictures", pictures_, 2, 1000);
+  ImGui::SameLine();
+  const bool can = !program_path("ffmpeg").empty();
+  ImGui::BeginDisabled(!can);
+  const bool was = video_;
+  ui::toggle("Video##video", video_);
+  ImGui::EndDisabled();
+  ui::tip("Video", "",
+          can ? fmt::format("Writes an MP4 file with {} frames per second.", CameraAnimation::rate)
+              : std::string("Needs ffmpeg. Install it to write videos."));
+  if (was && !video_ && path_.ends_with(".mp4")) path_.resize(path_.size() - 4);
+}
+
+// Sets problem_ to the reason why the path cannot be used; empty if it can.
+void FileDialog::check_path(const EditorContext& editor, const fs::path& path, const Form& form) {
+  problem_path_ = path_;
+  problem_ = problem_with(path, editor.dialogs.path);
+  // Check for protected sources before asking whether to replace a file.
+  if (!problem_.empty() || !form.writes) return;
+  try {
+    if (form.ending.empty())
+      editor.now->sources.check_folder(path);
+    else
+      editor.now->sources.check_file(path);
+  } catch (const Error& refused) {
+    problem_ = refused.what();
   }
+}
+
+// Checks the path and performs the action. Returns false if the dialog stays open.
+bool FileDialog::confirm(EditorContext& editor, const fs::path& path, const Form& form, bool replaces) {
+  refocus_path_ = true;
+  check_path(editor, path, form);
+  if (!problem_.empty()) return false;
+  if (replaces && replacing_ != path) {
+    replacing_ = path;
+    return false;
+  }
+  try {
+    perform_action(editor, path);
+  } catch (const std::exception& failed) {
+    problem_ = failed.what();
+    return false;
+  }
+  refocus_path_ = false;
+  return true;
+}
+
+void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
+  take_answer(editor);
+  if (editor.dialogs.path == FileDialogPurpose::none) {
+    asked_ = FileDialogPurpose::none;
+    desktop_.reset();
+    return;
+  }
+  const Question& question = question_of(editor.dialogs.path);
+  if (asked_ != editor.dialogs.path) begin(editor);
+  if (!begin_popup(question.title)) return;
+  const announce::Part part("dialog");
+  ImGui::PushFont(fonts().heading);
+  ImGui::TextUnformatted(question.title);
+  ImGui::PopFont();
+  ImGui::SameLine(0, px(12));
+  ImGui::TextDisabled("%s", question.hint);
+  bool done = draw_path();
+  const Form form = form_for(editor);
+  done = draw_entries(editor, thumbnails, form) || done;
+  draw_export_options(editor, form);
+  if (form.pictures) draw_picture_options(form);
   fs::path path(path_);
   if (!path.has_filename()) path = path.parent_path();
-  if (!ending.empty() && path.extension() != ending) path += ending;
-  const bool writes = !reads(editor.dialogs.path);
+  if (!form.ending.empty() && path.extension() != form.ending) path += form.ending;
+  std::error_code error;
   const bool filled = fs::is_directory(path, error) && !fs::is_empty(path, error);
-  const bool replaces = writes && path != editor.project.path && (fs::is_regular_file(path, error) || filled);
+  const bool replaces = form.writes && path != editor.project.path && (fs::is_regular_file(path, error) || filled);
   const bool asks = replaces && replacing_ == path;
   if (asks)
     ui::wrapped(path.filename().string() + " already exists. Press Enter or the button to replace it.", theme().danger);
@@ -419,42 +489,15 @@ void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
     announce::item("problem");
   } else
     ImGui::TextUnformatted("");
-  draw_desktop_buttons(editor, ending);
+  draw_desktop_buttons(editor, form.ending);
   const float width = px(120);
   ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * width - ImGui::GetStyle().ItemSpacing.x);
   const bool cancelled = ui::button("Cancel##cancel", {width, 0});
   ImGui::SameLine();
-  const std::size_t several = opens ? list_.chosen().size() : 1;
+  const std::size_t several = form.opens ? list_.chosen().size() : 1;
   const std::string action = asks ? "Replace" : several > 1 ? fmt::format("Open {}", several) : question.action;
   done = ui::primary_button((action + "##confirm").c_str(), {width, 0}) || done;
-  if (done) {
-    problem_path_ = path_;
-    problem_ = problem_with(path, editor.dialogs.path);
-    // Check for protected sources before asking whether to replace a file.
-    if (problem_.empty() && writes) try {
-        const bool file = !ending.empty();
-        file ? editor.now->sources.check_file(path) : editor.now->sources.check_folder(path);
-      } catch (const Error& refused) {
-        problem_ = refused.what();
-      }
-    if (!problem_.empty()) {
-      done = false;
-      refocus_path_ = true;
-    }
-  }
-  if (done && replaces && !asks) {
-    replacing_ = path;
-    done = false;
-    refocus_path_ = true;
-  }
-  if (done) try {
-      perform_action(editor, path);
-    } catch (const std::exception& failed) {
-      problem_path_ = path_;
-      problem_ = failed.what();
-      done = false;
-      refocus_path_ = true;
-    }
+  if (done) done = confirm(editor, path, form, replaces);
   preview_.draw(editor);
   if (cancelled) editor.project.after_save = nullptr;
   if (done || cancelled) {

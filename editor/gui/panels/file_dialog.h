@@ -9,8 +9,8 @@
 
 #include "editor/gui/panels/folder_list.h"
 #include "editor/gui/panels/plain_preview.h"
-#include "editor/gui/window/desktop.h"
-#include "editor/gui/window/editor_context.h"
+#include "editor/gui/platform/desktop.h"
+#include "editor/gui/state/editor_context.h"
 
 namespace rebake {
 
@@ -30,6 +30,20 @@ class FileDialog {
   void begin(const EditorContext& editor);
   /// The picked nodes if only those are exported or rendered; otherwise empty, for all.
   std::vector<NodeRef> wanted_nodes(const EditorContext& editor) const;
+  /// The parts of the dialog that an answer to the question needs.
+  struct Form {
+    bool exports = false, opens = false, film = false, pictures = false, writes = false;
+    bool offers_picked = false;     ///< offers to restrict the output to the picked nodes
+    std::string ending;             ///< file name extension of the answer; empty: a folder, or any
+    std::vector<std::string> lost;  ///< what an export would lose
+  };
+  Form form_for(const EditorContext& editor);
+  bool draw_path();
+  bool draw_entries(const EditorContext& editor, Thumbnails& thumbnails, const Form& form);
+  void draw_export_options(EditorContext& editor, const Form& form);
+  void draw_picture_options(const Form& form);
+  void check_path(const EditorContext& editor, const std::filesystem::path& path, const Form& form);
+  bool confirm(EditorContext& editor, const std::filesystem::path& path, const Form& form, bool replaces);
   void draw_desktop_buttons(const EditorContext& editor, const std::string& ending);
   /// Takes the answer of the desktop's dialog, if it has one.
   void take_answer(EditorContext& editor);

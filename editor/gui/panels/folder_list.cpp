@@ -26,9 +26,8 @@ std::string small_letters(std::string text) {
 }  // namespace
 
 bool holds_scene(const fs::path& folder) {
-  const auto known = formats();
   try {
-    return std::any_of(known.begin(), known.end(), [&](const Format& format) { return format.recognises(folder); });
+    return format_at(folder) != nullptr;
   } catch (const fs::filesystem_error&) {
     return false;  // no permission to read it
   }

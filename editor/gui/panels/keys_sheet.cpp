@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/state/commands.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
 #include "editor/gui/ui/widgets.h"
-#include "editor/gui/window/commands.h"
 
 namespace rebake {
 

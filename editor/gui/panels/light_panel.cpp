@@ -98,15 +98,10 @@ void LightPanel::draw_ball(const Lighting& lighting) {
   ui::tip("The light", "", "A white ball in the estimated or chosen light of the first object whose colours change.");
 }
 
-void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, bool on) {
-  const auto commit = [&](const SceneLight& changed) { editor.edit(edit_for(changed, true)); };
-  bool follows = on;
-  if (ui::toggle("Follows edits##follows-edits", follows)) editor.edit(edit_for(light, follows));
-  ui::tip("Light follows edits", "", "Updates shadows when objects are deformed, moved or removed.");
-  if (!on) return;
-  ImGui::SameLine();
-  ui::toggle("As baked##as-baked", editor.view.as_baked);
-  ui::tip("As baked", "", "Shows the baked colours without lighting effects, for comparison.");
+namespace {
+
+// Toggles of the effects.
+void draw_effects(EditorContext& editor, const SceneLight& light) {
   struct Wanted {
     const char* id;
     const char* name;
@@ -132,10 +127,14 @@ void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, b
       SceneLight changed = light;
       changed.*effect.wanted = wanted;
       if (effect.wanted == &SceneLight::self) changed.highlights = wanted;
-      commit(changed);
+      editor.edit(edit_for(changed, true));
     }
     ui::tip(effect.name, "", effect.help);
   }
+}
+
+// Choice of the light's source.
+void draw_source(EditorContext& editor, const SceneLight& light) {
   int source = static_cast<int>(light.source);
   ui::label("Light");
   if (ui::choice("source", source,
@@ -145,8 +144,23 @@ void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, b
     if (changed.source == SceneLight::Source::picture && !changed.picture)
       editor.dialogs.path = FileDialogPurpose::light_picture;
     else
-      commit(changed);
+      editor.edit(edit_for(changed, true));
   }
+}
+
+}  // namespace
+
+void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, bool on) {
+  const auto commit = [&](const SceneLight& changed) { editor.edit(edit_for(changed, true)); };
+  bool follows = on;
+  if (ui::toggle("Follows edits##follows-edits", follows)) editor.edit(edit_for(light, follows));
+  ui::tip("Light follows edits", "", "Updates shadows when objects are deformed, moved or removed.");
+  if (!on) return;
+  ImGui::SameLine();
+  ui::toggle("As baked##as-baked", editor.view.as_baked);
+  ui::tip("As baked", "", "Shows the baked colours without lighting effects, for comparison.");
+  draw_effects(editor, light);
+  draw_source(editor, light);
   if (!dragging_) {
     budget_ = light.budget * 255;
     sun_ = light.sun.direction;

@@ -10,10 +10,10 @@
 #include "editor/edits/nodes/unlock.h"
 #include "editor/edits/support.h"
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/state/commands.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
-#include "editor/gui/window/commands.h"
 
 namespace rebake {
 
@@ -89,9 +89,76 @@ void OutlinerPanel::draw_name(EditorContext& editor, const Node& node) {
   editor.edit(rename);
 }
 
+// The selectable name, with its tooltip, context menu and drag and drop.
+void OutlinerPanel::draw_selectable(EditorContext& editor, const PlacedNode& placed) {
+  const Node& node = *placed.node;
+  ImGui::PushStyleColor(ImGuiCol_Text, color(placed.visible ? theme().text : theme().muted));
+  const bool active = editor.active.contains(node.id);
+  if (active) {
+    ImGui::PushStyleColor(ImGuiCol_Text, color(theme().on_accent));
+    ImGui::PushStyleColor(ImGuiCol_Header, color(theme().accent));
+    ImGui::PushStyleColor(ImGuiCol_HeaderHovered, color(theme().accent));
+  }
+  const bool clicked = ImGui::Selectable(ui::shortened(node.name, ImGui::GetContentRegionAvail().x).c_str(), active,
+                                         ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_SpanAllColumns |
+                                             ImGuiSelectableFlags_AllowItemOverlap);
+  if (active) ImGui::PopStyleColor(3);
+  ImGui::PopStyleColor();
+  announce::item("name");
+  if (node.object)
+    ui::tip(node.name, "",
+            fmt::format("{} triangles, {} opaque texels, {:.1f} MB. Click to pick, double-click to rename, right-click "
+                        "for more.",
+                        node.object->triangle_count(), node.object->opaque_texel_count(),
+                        static_cast<double>(node.object->memory()) / 1e6));
+  if (clicked && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+    renaming_ = node.id;
+    name_ = node.name;
+    focus_name_ = true;
+    editor.active = {node.id};
+  } else if (clicked) {
+    pick(editor, node.id);
+  }
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
+    if (!editor.active.contains(node.id)) editor.active = {node.id};
+    editor.dialogs.context = true;
+  }
+  if (ImGui::BeginDragDropSource()) {
+    ImGui::SetDragDropPayload("node", &node.id, sizeof node.id);
+    ImGui::TextUnformatted(node.name.c_str());
+    ImGui::EndDragDropSource();
+  }
+  if (const auto dragged = dropped_node()) editor.edit(dropped_on(editor.scene(), *dragged, node));
+}
+
+namespace {
+
+// Toggles for visibility and lock.
+void draw_toggles(EditorContext& editor, const Node& node) {
+  const NodeRef ref{node.id};
+  ImGui::TableNextColumn();
+  const bool on_accent = editor.active.contains(node.id);
+  if (ui::quiet_icon(node.visible ? icons::eye : icons::eye_off, "Visible", node.visible, on_accent)) {
+    if (node.visible)
+      editor.edit(Hide{ref});
+    else
+      editor.edit(Show{ref});
+  }
+  ui::tip(node.visible ? "Hide" : "Show", command_key("Hide", editor), "Hidden nodes are not exported.");
+  ImGui::TableNextColumn();
+  if (ui::quiet_icon(node.locked ? icons::lock : icons::lock_open_outline, "Locked", node.locked, on_accent)) {
+    if (node.locked)
+      editor.edit(Unlock{ref});
+    else
+      editor.edit(Lock{ref});
+  }
+  ui::tip(node.locked ? "Unlock" : "Lock", "", "Locked nodes cannot be edited.");
+}
+
+}  // namespace
+
 void OutlinerPanel::draw_node(EditorContext& editor, const PlacedNode& placed, int depth) {
   const Node& node = *placed.node;
-  const NodeRef ref{node.id};
   const announce::Part part(node.name);
   ImGui::PushID(static_cast<int>(static_cast<std::uint64_t>(node.id)));
   ImGui::TableNextRow();
@@ -112,44 +179,7 @@ void OutlinerPanel::draw_node(EditorContext& editor, const PlacedNode& placed, i
   if (renaming_ == node.id) {
     draw_name(editor, node);
   } else {
-    ImGui::PushStyleColor(ImGuiCol_Text, color(placed.visible ? theme().text : theme().muted));
-    const bool active = editor.active.contains(node.id);
-    if (active) {
-      ImGui::PushStyleColor(ImGuiCol_Text, color(theme().on_accent));
-      ImGui::PushStyleColor(ImGuiCol_Header, color(theme().accent));
-      ImGui::PushStyleColor(ImGuiCol_HeaderHovered, color(theme().accent));
-    }
-    const bool clicked = ImGui::Selectable(ui::shortened(node.name, ImGui::GetContentRegionAvail().x).c_str(), active,
-                                           ImGuiSelectableFlags_AllowDoubleClick | ImGuiSelectableFlags_SpanAllColumns |
-                                               ImGuiSelectableFlags_AllowItemOverlap);
-    if (active) ImGui::PopStyleColor(3);
-    ImGui::PopStyleColor();
-    announce::item("name");
-    if (node.object)
-      ui::tip(
-          node.name, "",
-          fmt::format("{} triangles, {} opaque texels, {:.1f} MB. Click to pick, double-click to rename, right-click "
-                      "for more.",
-                      node.object->triangle_count(), node.object->opaque_texel_count(),
-                      static_cast<double>(node.object->memory()) / 1e6));
-    if (clicked && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
-      renaming_ = node.id;
-      name_ = node.name;
-      focus_name_ = true;
-      editor.active = {node.id};
-    } else if (clicked) {
-      pick(editor, node.id);
-    }
-    if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
-      if (!editor.active.contains(node.id)) editor.active = {node.id};
-      editor.dialogs.context = true;
-    }
-    if (ImGui::BeginDragDropSource()) {
-      ImGui::SetDragDropPayload("node", &node.id, sizeof node.id);
-      ImGui::TextUnformatted(node.name.c_str());
-      ImGui::EndDragDropSource();
-    }
-    if (const auto dragged = dropped_node()) editor.edit(dropped_on(editor.scene(), *dragged, node));
+    draw_selectable(editor, placed);
   }
   ImGui::TableNextColumn();
   if (node.object) {
@@ -160,23 +190,7 @@ void OutlinerPanel::draw_node(EditorContext& editor, const PlacedNode& placed, i
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
   }
-  ImGui::TableNextColumn();
-  const bool on_accent = editor.active.contains(node.id);
-  if (ui::quiet_icon(node.visible ? icons::eye : icons::eye_off, "Visible", node.visible, on_accent)) {
-    if (node.visible)
-      editor.edit(Hide{ref});
-    else
-      editor.edit(Show{ref});
-  }
-  ui::tip(node.visible ? "Hide" : "Show", command_key("Hide", editor), "Hidden nodes are not exported.");
-  ImGui::TableNextColumn();
-  if (ui::quiet_icon(node.locked ? icons::lock : icons::lock_open_outline, "Locked", node.locked, on_accent)) {
-    if (node.locked)
-      editor.edit(Unlock{ref});
-    else
-      editor.edit(Lock{ref});
-  }
-  ui::tip(node.locked ? "Unlock" : "Lock", "", "Locked nodes cannot be edited.");
+  draw_toggles(editor, node);
   ImGui::PopID();
 }
 

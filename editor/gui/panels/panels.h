@@ -7,9 +7,9 @@
 #include <string>
 
 #include "editor/edits/nodes/place.h"
+#include "editor/gui/state/editor_context.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/view/thumbnails.h"
-#include "editor/gui/window/editor_context.h"
 #include "render/picture.h"
 #include "render/picture_texture.h"
 
@@ -23,6 +23,7 @@ class OutlinerPanel {
   void draw(EditorContext& editor);
 
  private:
+  void draw_selectable(EditorContext& editor, const PlacedNode& placed);
   void draw_node(EditorContext& editor, const PlacedNode& placed, int depth);
   void draw_name(EditorContext& editor, const Node& node);
   void pick(EditorContext& editor, NodeId id);
@@ -154,6 +155,7 @@ class EditForm {
   void draw(EditorContext& editor, float right);
 
  private:
+  void draw_fields(const EditorContext& editor, const std::vector<FieldInfo>& fields);
   /// Resets the form for the edit `editor.dialogs.form`.
   void begin(const EditorContext& editor);
   /// The edits that the fields describe: one, or one per picked node. Throws EditError.

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/gui/window/editor_context.h"
+#include "editor/gui/state/editor_context.h"
 #include "render/picture_texture.h"
 
 namespace rebake {

@@ -8,10 +8,10 @@
 #include "editor/edits/nodes/rename_view.h"
 #include "editor/edits/stored_view.h"
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/state/commands.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
-#include "editor/gui/window/commands.h"
 
 namespace rebake {
 

@@ -11,12 +11,13 @@
 #include "editor/edits/deform/deforming.h"
 #include "editor/edits/deform/stretch.h"
 #include "editor/edits/deform/taper.h"
+#include "editor/edits/deform/target_spine.h"
 #include "editor/edits/deform/twist.h"
 #include "editor/edits/select/select_picture.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/ui/widgets.h"
-#include "mesh_ops/deform/curved_form.h"
+#include "mesh_ops/deform/bends/curved_form.h"
 
 namespace rebake {
 
@@ -24,26 +25,6 @@ namespace {
 
 constexpr float bend_grab_pixels = 11;
 constexpr double interleaved = 0.4;  // Spine::touched from which unselected triangles lie among the selected ones
-
-// Spine of the selected opaque triangles, each represented by its centroid, weighted by area. The rest of their objects
-// is passed too, to find where the selection is attached.
-Spine spine_of_targets(const Scene& scene, const std::vector<DeformTarget>& targets) {
-  std::vector<WeightedPoint> part, rest;
-  for (const DeformTarget& target : targets) {
-    DeformSet set = deform_set(scene, target);
-    for (const bool selected : {true, false}) {
-      const TriangleList list = set.opaque_triangles();
-      for (const Face& face : list.faces) {
-        const Vec3 &a = list.points[face[0]], &b = list.points[face[1]], &c = list.points[face[2]];
-        const WeightedPoint point{(a + b + c) / 3, (b - a).cross(c - a).norm()};
-        if (point.at.allFinite() && point.weight > 0) (selected ? part : rest).push_back(point);
-      }
-      for (TriangleSet& flags : set.flags)
-        for (std::uint8_t& flag : flags) flag = flag == 0 ? 1 : 0;
-    }
-  }
-  return spine_of(part, rest).value_or(Spine{});
-}
 
 // The deformation by an edit that was made along this spine; empty for other edits.
 std::function<Deformed(const Vec3&)> deformation_along(const Edit& edit, const Spine& spine) {
@@ -66,7 +47,7 @@ std::function<Deformed(const Vec3&)> deformation_along(const Edit& edit, const S
     form.factor = stretch->factor;
     axis = &stretch->axis;
   }
-  if (axis == nullptr || axis->axis != spine.along || !axis->from || !axis->to) return {};
+  if (axis == nullptr || axis->axis != AxisDirection(spine.along) || !axis->from || !axis->to) return {};
   form.axis = spine.along;
   form.from = *axis->from;
   form.to = *axis->to;

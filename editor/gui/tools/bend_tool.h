@@ -3,7 +3,7 @@
 #include "editor/gui/tools/falloff_overlay.h"
 #include "editor/gui/tools/tool.h"
 #include "editor/gui/tools/typed_number.h"
-#include "mesh_ops/deform/spine.h"
+#include "mesh_ops/deform/bends/spine.h"
 
 namespace rebake {
 

@@ -12,10 +12,10 @@
 
 #include "editor/edits/deform/cage.h"
 #include "editor/edits/deform/deforming.h"
+#include "editor/gui/state/commands.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/widgets.h"
-#include "editor/gui/window/commands.h"
-#include "mesh_ops/deform/cage_deformation.h"
+#include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 
 namespace rebake {
 

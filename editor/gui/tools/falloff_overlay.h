@@ -1,6 +1,6 @@
 #pragma once
 
-#include "editor/gui/window/editor_context.h"
+#include "editor/gui/state/editor_context.h"
 #include "render/graph/guides.h"
 
 namespace rebake {

@@ -11,9 +11,9 @@
 #include "editor/edits/nodes/duplicate.h"
 #include "editor/edits/nodes/transform.h"
 #include "editor/edits/support.h"
+#include "editor/gui/state/commands.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/widgets.h"
-#include "editor/gui/window/commands.h"
 #include "mesh_ops/base/polar.h"
 
 namespace rebake {

@@ -6,9 +6,9 @@
 
 #include "editor/edits/select/select_picture.h"
 #include "editor/edits/shape/erase.h"
+#include "editor/gui/state/commands.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/widgets.h"
-#include "editor/gui/window/commands.h"
 
 namespace rebake {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <utility>
 
+#include "editor/gui/platform/window.h"
+#include "editor/gui/state/editor_context.h"
 #include "editor/gui/ui/style.h"
 #include "editor/gui/view/viewport_projection.h"
-#include "editor/gui/window/editor_context.h"
-#include "editor/gui/window/window.h"
 
 namespace rebake {
 

@@ -2,7 +2,7 @@
 
 #include <GLFW/glfw3.h>
 
-#include "editor/gui/tools/expression.h"
+#include "editor/gui/ui/expression.h"
 
 namespace rebake {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "editor/gui/window/window.h"
+#include "editor/gui/platform/window.h"
 
 namespace rebake {
 

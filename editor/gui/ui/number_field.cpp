@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "editor/gui/tools/expression.h"
 #include "editor/gui/ui/announce.h"
+#include "editor/gui/ui/expression.h"
 #include "editor/gui/ui/style.h"
 
 namespace rebake::ui {

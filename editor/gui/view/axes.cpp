@@ -4,9 +4,9 @@
 #include <array>
 #include <string>
 
+#include "editor/gui/state/navigation.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/style.h"
-#include "editor/gui/view/navigation.h"
 
 namespace rebake {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "editor/gui/window/editor_context.h"
+#include "editor/gui/state/editor_context.h"
 #include "render/graph/plan.h"
 
 namespace rebake {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "editor/gui/window/editor_context.h"
+#include "editor/gui/state/editor_context.h"
 #include "render/picture.h"
 #include "render/picture_texture.h"
 

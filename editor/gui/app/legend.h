@@ -1,0 +1,14 @@
+#pragma once
+
+#include "editor/gui/state/editor_context.h"
+
+struct ImDrawList;
+struct ImVec2;
+
+namespace rebake {
+
+/// Draws a legend at the viewport's upper left corner `origin`: the meaning of the colours of an inspection mode, or
+/// the distance of the cut. Draws nothing in the normal mode without a cut.
+void draw_legend(const EditorContext& editor, ImDrawList& list, const ImVec2& origin);
+
+}  // namespace rebake

@@ -1,0 +1,72 @@
+#include "editor/gui/state/camera_animation.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "editor/gui/state/settings.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+CameraAnimation::CameraAnimation(fs::path out, int width, int height, std::vector<Camera> cameras,
+                                 const SourceGuard& sources)
+    : out_(std::move(out)), width_(width), height_(height), cameras_(std::move(cameras)) {
+  if (out_.extension() != ".mp4") {
+    sources.check_folder(out_);
+    pictures_ = out_;
+  } else {
+    sources.check_file(out_);
+    if (program_path("ffmpeg").empty())
+      throw Error(
+          "a video needs the program ffmpeg, which is not installed; install it, or name a folder for pictures");
+    pictures_ = cache_folder() / fmt::format("film-{}", ::getpid());
+    std::error_code nothing;
+    fs::remove_all(pictures_, nothing);  // left by an editor with the same process id that was killed
+    // Video in yuv420p needs even sizes.
+    width_ += width_ % 2;
+    height_ += height_ % 2;
+  }
+  std::error_code failed;
+  fs::create_directories(pictures_, failed);
+  if (failed) throw FileError(pictures_, "cannot be created: " + failed.message());
+}
+
+CameraAnimation::~CameraAnimation() {
+  encoder_.reset();
+  std::error_code gone;
+  if (video()) fs::remove_all(pictures_, gone);
+}
+
+std::string CameraAnimation::doing() const {
+  return encoder_ ? "Encoding the video" : fmt::format("Picture {} of {}", next_ + 1, cameras_.size());
+}
+
+std::string CameraAnimation::run_step(const std::function<void(const Camera&, const fs::path&)>& write,
+                                      const SourceGuard& sources) {
+  const fs::path partial = pictures_ / "video.mp4";
+  if (next_ < cameras_.size()) {
+    write(cameras_[next_], pictures_ / fmt::format("{:03}.png", next_));
+    if (++next_ < cameras_.size()) return "";
+    if (!video()) return fmt::format("Wrote {} pictures to {}", cameras_.size(), out_.string());
+    encoder_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{program_path("ffmpeg"), "-nostdin", "-loglevel", "error", "-y", "-framerate",
+                                 std::to_string(rate), "-i", (pictures_ / "%03d.png").string(), "-frames:v",
+                                 std::to_string(cameras_.size()), "-pix_fmt", "yuv420p", partial.string()});
+    return "";
+  }
+  const std::optional<int> status = encoder_->ended();
+  if (!status) return "";
+  if (*status != 0) throw Error(fmt::format("ffmpeg failed with exit status {}; no video was written", *status));
+  write_file_atomically(out_, read_file(partial), sources);
+  return fmt::format("Wrote {} seconds of video to {}", static_cast<double>(cameras_.size()) / rate, out_.string());
+}
+
+std::string CameraAnimation::stopped() const {
+  if (video()) return "Cancelled: no video was written";
+  return fmt::format("Cancelled: {} of {} pictures were written to {}", next_, cameras_.size(), out_.string());
+}
+
+}  // namespace rebake

@@ -1,0 +1,224 @@
+#include "editor/gui/state/project.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "editor/actions/export_action.h"
+#include "editor/actions/save.h"
+#include "editor/document/journal.h"
+#include "editor/document/project.h"
+#include "editor/edits/nodes/import.h"
+#include "editor/script/script.h"
+#include "mesh_ops/base/files.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void keep_journal(Document& document) {
+  const fs::path folder = journal_folder();
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) throw FileError(folder, "cannot be created, so there is no crash recovery: " + failed.message());
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  document.keep_journal(folder / fmt::format("{}-{}.journal",
+                                             std::chrono::duration_cast<std::chrono::milliseconds>(since).count(),
+                                             ::getpid()));
+}
+
+}  // namespace
+
+void Project::begin_journal() {
+  worker_.start("journal", [](Session& session) { keep_journal(session.document); });
+}
+
+void Project::open(const std::vector<std::string>& paths, bool wanted) {
+  if (paths.size() == 1 && is_project_file(paths.front())) {
+    if (unsaved() && !wanted) {
+      to_open = paths;
+      return;
+    }
+    open_project(fs::absolute(paths.front()), {});
+    return;
+  }
+  for (const std::string& source : paths) {
+    Import import;
+    import.path = source;
+    worker_.start(
+        "import",
+        [import](Session& session) {
+          // The first import sets the ground plane at its lowest point.
+          Import one = import;
+          one.ground = session.scene().roots.empty();
+          session.edit(one);
+        },
+        [this, source] { settings_.remember(absolute_path(source).string()); });
+  }
+}
+
+void Project::open_project(const fs::path& file, const SourceLinks& links) {
+  auto gone = std::make_shared<std::vector<SourcesUnavailable::Source>>();
+  worker_.start(
+      "open",
+      [file, links, gone](Session& session) {
+        try {
+          Document opened = Document::open(file, links, session.progress);
+          keep_journal(opened);
+          session.document.discard_journal();
+          session.document = std::move(opened);
+        } catch (const SourcesUnavailable& moved) {
+          *gone = moved.sources;  // the user is asked for new paths
+        }
+      },
+      [this, file, links, gone] {
+        if (!gone->empty()) {
+          ask_for_sources(file, *gone, links);
+          return;
+        }
+        path = file;
+        saved_ = now_->scene;
+        imported = now_->scene;
+        settings_.remember(file.string());
+        opened_();
+      });
+}
+
+void Project::recover(const fs::path& journal, const SourceLinks& links, bool go_on_without) {
+  auto gone = std::make_shared<std::vector<SourcesUnavailable::Source>>();
+  auto problem = std::make_shared<std::string>();
+  worker_.start(
+      "recover",
+      [journal, links, gone, problem, go_on_without, keeps_present = unsaved()](Session& session) {
+        Document::Recovered recovered = Document::recover(journal, links, session.progress);
+        *gone = recovered.gone;
+        if (!gone->empty() && !go_on_without) return;  // the user is asked for new paths
+        if (!recovered.document.keeps_journal()) keep_journal(recovered.document);
+        const fs::path present = session.document.journal_path();
+        if (!keeps_present) session.document.discard_journal();
+        session.document = std::move(recovered.document);
+        std::string said = fmt::format("{} edits recovered", recovered.edits);
+        if (keeps_present && !present.empty()) {
+          LostWork open;
+          open.journal = present;
+          discard(open);
+          said += "; the work that was open before was moved to the trash (File, Discarded work)";
+        }
+        if (recovered.torn) said += "; the last edit was incomplete when the editor ended and is lost";
+        session.say(said);
+        if (recovered.lost.empty()) {
+          // The new journal holds everything.
+          if (recovered.journal) recovered.journal->discard();
+          return;
+        }
+        *problem = fmt::format("not everything could be recovered; {} was kept:", journal.string());
+        for (const std::string& lost : recovered.first_lost()) *problem += "\n" + lost;
+      },
+      [this, journal, links, gone, problem, go_on_without] {
+        if (!gone->empty() && !go_on_without) {
+          ask_for_sources(journal, *gone, links);
+          return;
+        }
+        path.clear();
+        saved_.reset();
+        imported = {};
+        if (problem->empty()) return;
+        messages_.fail(*problem);
+      });
+}
+
+void Project::ask_for_sources(const fs::path& needed_by, const std::vector<SourcesUnavailable::Source>& gone,
+                              const SourceLinks& links) {
+  relinking = Relinking{needed_by, {}, links};
+  for (const SourcesUnavailable::Source& source : gone)
+    relinking->sources.push_back(
+        {source.path, source.trouble, resolved_source(source.path, source.content, links).string()});
+}
+
+void Project::relink(bool go_on_without) {
+  const Relinking wanted = *std::exchange(relinking, std::nullopt);
+  SourceLinks links = wanted.known;
+  for (const Relinking::Source& source : wanted.sources) {
+    links.erase(source.path);
+    if (source.now != source.path.string() && !source.now.empty()) links.emplace(source.path, source.now);
+  }
+  if (is_project_file(wanted.needed_by)) {
+    open_project(wanted.needed_by, links);
+    return;
+  }
+  recover(wanted.needed_by, links, go_on_without);
+}
+
+void Project::save(const fs::path& file) {
+  auto saved = std::make_shared<Scene>();
+  auto warnings = std::make_shared<std::vector<std::string>>();
+  worker_.start(
+      "saving",
+      [file, saved, warnings](Session& session) {
+        *warnings = session.document.save(file, session.progress);
+        *saved = session.scene();
+      },
+      [this, file, saved, warnings] {
+        path = file;
+        saved_ = *saved;
+        settings_.remember(file.string());
+        messages_.say("Saved " + file.string());
+        for (const std::string& warning : *warnings) messages_.fail(warning);
+        if (after_save) std::exchange(after_save, nullptr)();
+      },
+      // After a failed save the follow-up is dropped, so that a later save does not trigger it.
+      [this] { after_save = nullptr; });
+}
+
+void Project::save_scene(const fs::path& folder) {
+  worker_.start("save scene", [folder](Session& session) {
+    SaveAction action;
+    action.out = folder.string();
+    run(session, action);
+  });
+}
+
+void Project::export_to(const fs::path& folder, const std::vector<NodeRef>& nodes,
+                        const std::optional<PlainChoice>& plain) {
+  worker_.start("export", [folder, nodes, plain](Session& session) {
+    ExportAction action;
+    action.out = folder.string();
+    action.nodes = nodes;
+    if (plain) {
+      action.plain = true;
+      action.width = plain->width;
+      action.way = plain->way;
+    }
+    run(session, action);
+    session.drop_renderer();  // frees the copy of the scene on the GPU that measured the loss
+  });
+}
+
+void Project::save_script(const fs::path& file) {
+  std::string text;
+  for (const Edit& one : now_->done) text += to_json(one).dump() + "\n";
+  worker_.start("save script", [file, text](Session& session) {
+    write_file_atomically(file, text, session.document.sources());
+    session.say("Wrote " + file.string());
+  });
+}
+
+void Project::run_script(const fs::path& file) {
+  worker_.start("script", [file](Session& session) { rebake::run_script(session, read_input(file), file, {}); });
+}
+
+bool Project::unsaved() const {
+  const Scene& kept = saved_ ? *saved_ : imported;
+  const std::shared_ptr<const SceneLight>&now = now_->scene.light, &before = kept.light;
+  const bool same_light = now == before || (now && before && *now == *before);
+  return now_->scene.roots != kept.roots || now_->scene.views != kept.views ||
+         now_->scene.background != kept.background || now_->scene.ground != kept.ground || !same_light;
+}
+
+}  // namespace rebake

@@ -1,0 +1,204 @@
+// Methods of class Document: edits, history, files and pictures.
+#include <pybind11/eval.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <optional>
+#include <utility>
+
+#include "editor/actions/export_action.h"
+#include "editor/actions/lit.h"
+#include "editor/actions/save.h"
+#include "editor/actions/views.h"
+#include "editor/edits/support.h"
+#include "editor/fields/codec.h"
+#include "editor/python/json_python.h"
+#include "editor/python/py_document.h"
+#include "editor/python/stub.h"
+#include "mesh_ops/formats/formats.h"
+#include "render/picture.h"
+
+using nlohmann::json;
+
+namespace rebake {
+
+namespace {
+
+Edit edit_once(PyDocument& document, const json& line) {
+  std::optional<Edit> made;
+  document.work([&](Session& session) {
+    session.document.protect_files_of(line);
+    check_boxes(line);
+    made = read_edit(line, session.scene());
+    session.edit(*made);
+  });
+  return *made;
+}
+
+py::array render_picture(PyDocument& document, int width, int height, int samples, const py::object& camera,
+                         const std::string& view_name) {
+  const json wanted = to_json(camera);
+  Image image;
+  document.work([&](Session& session) {
+    const std::optional<Camera> given =
+        wanted.is_null() ? std::nullopt : std::optional(Codec<Camera>::read(wanted, session.scene()));
+    const Lighting lighting = lit(session.scene());
+    image = session.renderer().render(
+        session.scene(), resolve_view(session.scene(), given, view_name, width, height, samples), {}, &lighting);
+  });
+  return py::array_t<std::uint8_t>({image.height, image.width, 3}, image.rgb.data());
+}
+
+py::list nodes_of(PyDocument& document) {
+  py::list result;
+  const Scene scene = document.scene();
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    const NodeId parent = parent_of(scene, placed.node->id);
+    py::array_t<double> to_world({4, 4});
+    auto matrix = to_world.mutable_unchecked<2>();
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) matrix(row, column) = placed.to_world.matrix()(row, column);
+    py::dict node;
+    node["id"] = static_cast<std::uint64_t>(placed.node->id);
+    node["name"] = placed.node->name;
+    node["parent"] = parent == NodeId::none ? py::object(py::none()) : py::str(find(scene, parent)->name);
+    node["visible"] = placed.visible;
+    node["locked"] = placed.locked;
+    node["triangles"] = placed.node->object ? placed.node->object->triangle_count() : 0;
+    node["to_world"] = to_world;
+    result.append(node);
+  }
+  return result;
+}
+
+// Applies the edit `op`; fields that are None are omitted. Returns the selections of all objects if the edit changes
+// them.
+py::object edit_with(PyDocument& document, const std::string& op, const py::dict& fields) {
+  json line = to_json(fields);
+  line["op"] = op;
+  const Edit edit = edit_once(document, line);
+  return edit.type().selects ? py::object(selections_of(document)) : py::none();
+}
+
+std::vector<std::string> export_document(PyDocument& document, const std::filesystem::path& path,
+                                         const py::object& layout, const std::string& format, bool plain,
+                                         const py::object& width, const py::object& way, const std::string& keep,
+                                         std::optional<double> psnr, double seconds,
+                                         const std::filesystem::path& report) {
+  ExportAction action;
+  action.out = path.string();
+  action.format = format;
+  if (!layout.is_none()) action.layout = Codec<Layout>::read(to_json(layout), {});
+  action.plain = plain;
+  action.width = Codec<FuseWidth>::read(to_json(width), {});
+  if (!way.is_none()) action.way = Codec<FuseMethod>::read(to_json(way), {});
+  action.keep = keep;
+  action.psnr = psnr;
+  action.seconds = seconds;
+  action.report = report.string();
+  std::vector<std::string> notes;
+  document.work([&](Session& session) {
+    if (!plain) {
+      check_not_plain(action);
+      const ExportOptions options{action.layout, session.document.sources()};
+      notes = format_named(format).write(session.scene(), path, options, session.progress).notes;
+      return;
+    }
+    const auto say = std::exchange(session.say, [&notes](const std::string& line) { notes.push_back(line); });
+    try {
+      run(session, action);
+    } catch (...) {
+      session.say = say;
+      throw;
+    }
+    session.say = say;
+  });
+  return notes;
+}
+
+void add_history_methods(py::class_<PyDocument>& type) {
+  type.def(
+      "edit", [](PyDocument& document, const py::dict& line) { edit_once(document, to_json(line)); }, py::arg("edit"),
+      "Applies one edit, given as a line of a script.");
+  type.def(
+      "edits",
+      [](PyDocument& document) {
+        py::list lines;
+        for (const Edit& edit : document.edits()) lines.append(to_python(rebake::to_json(edit)));
+        return lines;
+      },
+      "The edits so far, as lines of a script; nodes by id.");
+  type.def(
+      "undo",
+      [](PyDocument& document) {
+        bool done = false;
+        document.work([&](Session& session) { done = session.document.undo(1, session.progress); });
+        return done;
+      },
+      "Undoes one edit. False if there is none.");
+  type.def(
+      "redo",
+      [](PyDocument& document) {
+        bool done = false;
+        document.work([&](Session& session) { done = session.document.redo(1, session.progress); });
+        return done;
+      },
+      "Redoes one edit. False if there is none.");
+  type.def(
+      "keep_journal",
+      [](PyDocument& document, const std::filesystem::path& path) {
+        document.work([&](Session& session) { session.document.keep_journal(path); });
+      },
+      py::arg("path"), "Begins a journal: from now on, each edit is on the disk before it returns.");
+  type.def("discard_journal",
+           [](PyDocument& document) { document.work([](Session& session) { session.document.discard_journal(); }); });
+}
+
+// Methods whose names, types and defaults are visible to help() and inspect.
+void add_edit_methods(py::class_<PyDocument>& type) {
+  type.def("_edit", &edit_with);
+  py::dict scope;
+  scope["__builtins__"] = py::module_::import("builtins");
+  scope["__name__"] = "rebake";
+  py::exec(python_methods(), scope);
+  const py::object edits = scope["Edits"];
+  for (const EditType* edit : edit_types()) {
+    const std::string name = python_name(edit->op);
+    type.attr(name.c_str()) = edits.attr(name.c_str());
+  }
+}
+
+}  // namespace
+
+void add_document_methods(py::class_<PyDocument>& type) {
+  type.def_property_readonly("nodes", &nodes_of, "Every node: id, name, parent, visible, locked, triangles, to_world.");
+  type.def_readwrite(
+      "progress", &PyDocument::progress,
+      "None, or a function called with the present task and its share, 0 to 1; an exception cancels the work.");
+  add_history_methods(type);
+  type.def(
+      "save",
+      [](PyDocument& document, const std::filesystem::path& path) {
+        std::vector<std::string> warnings;
+        document.work([&](Session& session) {
+          if (path.extension() == ".rebake")
+            warnings = session.document.save(path, session.progress);
+          else
+            run(session, SaveAction{path.string()});
+        });
+        for (const std::string& warning : warnings)
+          if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
+      },
+      py::arg("path"), "Writes a project (.rebake), or a scene folder with all nodes.");
+  type.def("export", &export_document, py::arg("path"), py::arg("layout") = py::none(),
+           py::arg("format") = "mobilenerf", py::arg("plain") = false, py::arg("width") = "auto",
+           py::arg("way") = py::none(), py::arg("keep") = "auto", py::arg("psnr") = py::none(), py::arg("seconds") = 0,
+           py::arg("report") = "",
+           "Exports in the MobileNeRF format or another; returns notes about conversions and losses.");
+  type.def("render", &render_picture, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
+           py::arg("camera") = py::none(), py::arg("view") = "", "Renders a picture, uint8, height × width × 3.");
+  add_edit_methods(type);
+}
+
+}  // namespace rebake

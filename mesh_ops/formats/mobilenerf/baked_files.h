@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace rebake {
+
+/// Whether a file name belongs to a MobileNeRF folder, or to the files that Rebake adds to one.
+bool is_baked_file_name(const std::string& name);
+
+/// Whether the decoder of a folder (mlp.json) is one by its content, not only by its name.
+bool has_baked_decoder(const std::filesystem::path& folder);
+
+/// The files that read_baked_folder() reads, relative to the folder; empty without mlp.json. Throws FileError as
+/// count_texture_sets().
+std::vector<std::filesystem::path> baked_files(const std::filesystem::path& folder);
+
+}  // namespace rebake

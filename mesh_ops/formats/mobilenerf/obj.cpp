@@ -1,0 +1,286 @@
+#include "mesh_ops/formats/mobilenerf/obj.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+#include <unordered_map>
+
+#include "mesh_ops/base/error.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+
+struct Corner {
+  std::uint32_t position;
+  std::uint32_t uv;
+};
+
+class Parser {
+ public:
+  Parser(std::string_view text, const std::filesystem::path& name)
+      : at_(text.data()), end_(text.data() + text.size()), name_(name) {
+    if (text.starts_with("\xEF\xBB\xBF")) at_ += 3;  // a byte-order mark
+  }
+
+  ObjMesh run() {
+    while (at_ != end_) {
+      ++line_;
+      const char* stop = std::find(at_, end_, '\n');
+      next_ = stop == end_ ? end_ : stop + 1;
+      line_end_ = stop;
+      while (line_end_ > at_ && (line_end_[-1] == '\r' || line_end_[-1] == ' ' || line_end_[-1] == '\t')) --line_end_;
+      statement();
+      at_ = next_;
+    }
+    if (uvs_.empty() && !corners_.empty()) fail("faces without texture coordinates (vt): features cannot be looked up");
+    return finish();
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw FileError(name_, fmt::format("line {}: {}", line_, message));
+  }
+
+  void skip_blanks() {
+    while (at_ != line_end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
+  }
+
+  void statement() {
+    skip_blanks();
+    if (at_ == line_end_ || *at_ == '#') return;
+    const char* word = at_;
+    while (at_ != line_end_ && *at_ != ' ' && *at_ != '\t') ++at_;
+    const std::string_view key(word, static_cast<std::size_t>(at_ - word));
+    if (key == "v") {
+      const double x = number(), y = number(), z = number();
+      positions_.emplace_back(x, y, z);
+    } else if (key == "vt") {
+      const double u = number(), v = number();
+      uvs_.emplace_back(u, v);
+    } else if (key == "f") {
+      face();
+    } else if (key == "l" || key == "p") {
+      fail("lines and points have no texels; only faces can be read");
+    }
+    // Normals, groups, materials and other statements have no meaning in this format.
+  }
+
+  double number() {
+    skip_blanks();
+    if (at_ == line_end_) fail("is truncated: a number is missing");
+    if (*at_ == '+') ++at_;
+    double value = 0;
+    const auto [stop, error] = std::from_chars(at_, line_end_, value);
+    if (error == std::errc::invalid_argument || (stop != line_end_ && *stop != ' ' && *stop != '\t'))
+      fail(fmt::format("\"{}\" is not a number", word_at(at_)));
+    // Numbers that underflow become 0.
+    if (error == std::errc::result_out_of_range) value = std::strtod(std::string(at_, stop).c_str(), nullptr);
+    if (!std::isfinite(value)) fail(fmt::format("\"{}\" is not a finite number", word_at(at_)));
+    at_ = stop;
+    return value;
+  }
+
+  std::string word_at(const char* from) const {
+    const char* stop = from;
+    while (stop != line_end_ && *stop != ' ' && *stop != '\t' && stop - from < 40) ++stop;
+    std::string word(from, stop);
+    // Control characters of binary files must not garble the terminal.
+    std::replace_if(
+        word.begin(), word.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
+    return word;
+  }
+
+  std::uint32_t index(std::size_t count, const char* what) {
+    std::int64_t value = 0;
+    const auto [stop, error] = std::from_chars(at_, line_end_, value);
+    if (error != std::errc() || value == 0) fail(fmt::format("\"{}\" is not a {} index", word_at(at_), what));
+    const std::int64_t zero_based = value > 0 ? value - 1 : value + static_cast<std::int64_t>(count);
+    if (zero_based < 0 || zero_based >= static_cast<std::int64_t>(unused))
+      fail(fmt::format("{} index {} is out of range ({} so far)", what, value, count));
+    at_ = stop;
+    return static_cast<std::uint32_t>(zero_based);
+  }
+
+  void face() {
+    Corner polygon[3] = {};
+    int corner_count = 0;
+    for (skip_blanks(); at_ != line_end_ && *at_ != '#'; skip_blanks()) {
+      Corner corner{};
+      corner.position = index(positions_.size(), "vertex");
+      if (at_ == line_end_ || *at_ != '/') fail("a face has no texture coordinates (vt): write f v/vt v/vt v/vt");
+      ++at_;
+      if (at_ == line_end_ || *at_ == '/') fail("a face has no texture coordinates (vt): write f v/vt v/vt v/vt");
+      corner.uv = index(uvs_.size(), "vt");
+      if (at_ != line_end_ && *at_ == '/') {
+        ++at_;
+        index(unused - 1, "normal");
+      }
+      if (at_ != line_end_ && *at_ != ' ' && *at_ != '\t')
+        fail(fmt::format("\"{}\" does not belong in a face", word_at(at_)));
+      if (corner_count < 3) {
+        polygon[corner_count] = corner;
+      } else {
+        polygon[1] = polygon[2];
+        polygon[2] = corner;
+      }
+      ++corner_count;
+      if (corner_count >= 3)
+        for (const Corner& c : polygon) {
+          corners_.push_back(c);
+          highest_index_ = std::max(highest_index_, std::max(c.position, c.uv));
+        }
+    }
+    if (corner_count < 3) fail("a face needs at least three corners");
+    face_lines_.push_back(line_);
+    face_ends_.push_back(corners_.size());
+  }
+
+  [[noreturn]] void fail_range() const {
+    std::size_t f = 0;
+    for (std::size_t c = 0; c < corners_.size(); ++c) {
+      while (c >= face_ends_[f]) ++f;
+      if (corners_[c].position >= positions_.size())
+        throw FileError(name_, fmt::format("line {}: vertex index {} is out of range (the file has {})", face_lines_[f],
+                                           corners_[c].position + 1, positions_.size()));
+      if (corners_[c].uv >= uvs_.size())
+        throw FileError(name_, fmt::format("line {}: vt index {} is out of range (the file has {})", face_lines_[f],
+                                           corners_[c].uv + 1, uvs_.size()));
+    }
+    throw FileError(name_, "has a face out of range");
+  }
+
+  ObjMesh finish() {
+    if (!corners_.empty() && highest_index_ >= std::min(positions_.size(), uvs_.size()))
+      if (std::any_of(corners_.begin(), corners_.end(),
+                      [&](const Corner& c) { return c.position >= positions_.size() || c.uv >= uvs_.size(); }))
+        fail_range();
+    ObjMesh mesh;
+    mesh.faces.resize(corners_.size() / 3);
+    const bool paired =
+        positions_.size() == uvs_.size() &&
+        std::all_of(corners_.begin(), corners_.end(), [](const Corner& c) { return c.position == c.uv; });
+    if (paired) {
+      mesh.positions = std::move(positions_);
+      mesh.uvs = std::move(uvs_);
+      for (std::size_t c = 0; c < corners_.size(); ++c) mesh.faces[c / 3][c % 3] = corners_[c].position;
+      return mesh;
+    }
+    std::unordered_map<std::uint64_t, std::uint32_t> known;
+    for (std::size_t c = 0; c < corners_.size(); ++c) {
+      const Corner corner = corners_[c];
+      const auto [it, fresh] = known.try_emplace(std::uint64_t{corner.position} << 32 | corner.uv,
+                                                 static_cast<std::uint32_t>(mesh.positions.size()));
+      if (fresh) {
+        mesh.positions.push_back(positions_[corner.position]);
+        mesh.uvs.push_back(uvs_[corner.uv]);
+      }
+      mesh.faces[c / 3][c % 3] = it->second;
+    }
+    return mesh;
+  }
+
+  const char* at_;
+  const char* end_;
+  const char* next_ = nullptr;
+  const char* line_end_ = nullptr;
+  const std::filesystem::path& name_;
+  std::size_t line_ = 0;
+  std::vector<Vec3> positions_;
+  std::vector<Vec2> uvs_;
+  std::vector<Corner> corners_;
+  std::uint32_t highest_index_ = 0;
+  std::vector<std::size_t> face_lines_;  // line of each face, for messages
+  std::vector<std::size_t> face_ends_;   // end of each face in corners_
+};
+
+void append(std::string& out, double value) {
+  char buffer[400];
+  auto [end, error] = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, 6);
+  double back = 0;
+  std::from_chars(buffer, end, back);
+  if (back != value) end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  out.append(buffer, end);
+}
+
+void append(std::string& out, std::uint32_t value) {
+  char buffer[16];
+  out.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+}  // namespace
+
+ObjMesh read_obj(std::string_view text, const std::filesystem::path& name) { return Parser(text, name).run(); }
+
+std::string write_obj(const std::vector<Vec3>& positions, const std::vector<Vec2>& uvs, const std::vector<Face>& faces,
+                      std::size_t first_face, std::size_t last_face) {
+  // Numbers the used vertices in their old order.
+  std::vector<std::uint32_t> number(positions.size(), unused);
+  for (std::size_t f = first_face; f < last_face; ++f)
+    for (const std::uint32_t vertex : faces[f]) number[vertex] = 0;
+  std::vector<std::uint32_t> old;
+  for (std::uint32_t v = 0; v < number.size(); ++v) {
+    if (number[v] == unused) continue;
+    number[v] = static_cast<std::uint32_t>(old.size());
+    old.push_back(v);
+  }
+
+  std::string out;
+  out.reserve(old.size() * 60 + (last_face - first_face) * 30);
+  std::uint32_t written = 0;
+  const auto write_vertices = [&](std::uint32_t end) {
+    for (std::uint32_t v = written; v < end; ++v) {
+      const Vec3& p = positions[old[v]];
+      out += 'v';
+      for (int axis = 0; axis < 3; ++axis) {
+        out += ' ';
+        append(out, p[axis]);
+      }
+      out += '\n';
+    }
+    for (std::uint32_t v = written; v < end; ++v) {
+      out += "vt ";
+      append(out, uvs[old[v]].x());
+      out += ' ';
+      append(out, uvs[old[v]].y());
+      out += '\n';
+    }
+    written = end;
+  };
+  // The published exporter writes a quad's vertices just before its one or two faces. Faces in that order are written
+  // the same way, so an unchanged quad keeps its bytes.
+  for (std::size_t f = first_face; f < last_face;) {
+    std::uint32_t end = 0;
+    std::size_t last = f;
+    for (; last < last_face; ++last) {
+      std::uint32_t low = unused, high = 0;
+      for (const std::uint32_t vertex : faces[last]) {
+        low = std::min(low, number[vertex]);
+        high = std::max(high, number[vertex]);
+      }
+      if (last != f && low >= end) break;
+      end = std::max(end, high + 1);
+    }
+    if (end > written) write_vertices(end);
+    for (; f < last; ++f) {
+      out += 'f';
+      for (const std::uint32_t vertex : faces[f]) {
+        out += ' ';
+        append(out, number[vertex] + 1);
+        out += '/';
+        append(out, number[vertex] + 1);
+      }
+      out += '\n';
+    }
+  }
+  return out;
+}
+
+}  // namespace rebake

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+/// Reads scene.json and the object folders that it names. Throws FileError.
+Scene read_scene_folder(const std::filesystem::path& folder, const Progress& progress = {});
+
+/// Writes a scene to `out` without conversion: scene.json, and one MobileNeRF folder per distinct object. If the
+/// scene's light follows edits, the bodies on which light was baked are written too, as folders of their own. Returns
+/// sentences for the user about data that was left out. Throws FileError.
+std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out, const Progress& progress = {});
+
+/// The text of scene.json. `folder_of`: folder name per object, and with `with_bodies` also per body.
+std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of,
+                             bool with_bodies = false);
+
+/// Makes a folder name from `name`: letters, digits, dot, dash and underscore, at most 200 characters plus a number
+/// that makes it different from all in `taken`.
+std::string folder_name(const std::string& name, const std::vector<std::string>& taken);
+
+}  // namespace rebake

@@ -1,0 +1,236 @@
+#include "mesh_ops/light/learned/transfer_model.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/base/results.h"
+#include "mesh_ops/light/transport/occluder.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr const char* kind = "rebake transfer model 1";
+constexpr const char* kind_with_net = "rebake transfer model 2";
+
+// Binary writer and reader, called by the visit functions in the same order.
+class Writer {
+ public:
+  template <class T>
+  void operator()(const T* values, std::size_t count) {
+    bytes.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+  }
+  std::string bytes;
+};
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : rest_(bytes) {}
+  template <class T>
+  void operator()(T* values, std::size_t count) {
+    if (rest_.size() / sizeof(T) < count)
+      throw Error("the file is truncated. Train the model again, or copy it again.");
+    std::memcpy(values, rest_.data(), count * sizeof(T));
+    rest_.remove_prefix(count * sizeof(T));
+  }
+  bool done() const { return rest_.empty(); }
+
+ private:
+  std::string_view rest_;
+};
+
+struct Sizes {
+  std::uint64_t keys, probes, dimensions, components;
+};
+
+// Visits all arrays and numbers of a model whose containers already have their sizes.
+template <class Model, class Visit>
+void visit_numbers(Model& model, Visit& visit) {
+  auto& learnt = model.learnt;
+  const auto matrix = [&](auto& m) { visit(m.data(), static_cast<std::size_t>(m.size())); };
+  visit(model.keys.data(), model.keys.size());
+  visit(model.facing.data(), model.facing.size());
+  visit(learnt.probes.data(), learnt.probes.size());
+  for (auto& p : learnt.space.rest) visit(p.data(), 3);
+  visit(&learnt.space.size, 1);
+  visit(&learnt.space.farthest, 1);
+  visit(&learnt.space.largest, 1);
+  matrix(learnt.space.mean);
+  matrix(learnt.space.axes);
+  matrix(learnt.space.deviations);
+  matrix(learnt.mean);
+  matrix(learnt.components);
+  matrix(learnt.linear);
+}
+
+template <class State, class Visit>
+void visit_net(State& state, Visit& visit) {
+  visit(state.chart.source.data(), state.chart.source.size());
+  for (auto& uv : state.chart.uvs) visit(uv.data(), 2);
+  for (auto& face : state.chart.faces) visit(face.data(), 3);
+  visit(state.weights.data(), state.weights.size());
+  visit(state.box.min().data(), 3);
+  visit(state.box.max().data(), 3);
+  visit(state.mean.data(), static_cast<std::size_t>(state.mean.size()));
+  visit(&state.scale, 1);
+}
+
+}  // namespace
+
+Eigen::VectorXf TransferModel::predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there) const {
+  return net ? net->predict(keys_there) : learnt.predict(place);
+}
+
+std::string bytes_of(const TransferModel& model) {
+  const LearntTransfer& learnt = model.learnt;
+  nlohmann::json head = {{"kind", model.net ? kind_with_net : kind},
+                         {"body", fmt::format("{:016x}", model.body)},
+                         {"sites", model.sites},
+                         {"poses_from", model.poses_from},
+                         {"poses", model.poses},
+                         {"rays", model.rays},
+                         {"tracing_seconds", model.tracing_seconds},
+                         {"learning_seconds", learnt.seconds},
+                         {"held_back_error", learnt.held_back_error},
+                         {"turning_error", model.turning_error},
+                         {"largest_displacement", learnt.space.largest * learnt.space.size},
+                         {"keys", model.keys.size()},
+                         {"probes", learnt.probes.size()},
+                         {"dimensions", learnt.space.dimensions()},
+                         {"components", learnt.components.cols()}};
+  if (model.net) {
+    const UnetTransfer::State& net = model.net->state();
+    head["net"] = {{"side", net.side},
+                   {"channels", net.channels},
+                   {"vertices", net.chart.source.size()},
+                   {"faces", net.chart.faces.size()},
+                   {"learning_seconds", net.seconds},
+                   {"held_back_error", model.net_error}};
+  }
+  Writer writer;
+  writer.bytes = head.dump() + "\n";
+  visit_numbers(model, writer);
+  if (model.net) visit_net(model.net->state(), writer);
+  const std::uint64_t hash = content_hash(writer.bytes);
+  writer(&hash, 1);
+  return std::move(writer.bytes);
+}
+
+namespace {
+
+// The stated sizes are checked against the file before memory is allocated; in doubles, which do not overflow.
+void require_room(std::size_t file_size, double values, std::size_t value_size) {
+  if (!(values * static_cast<double>(value_size) <= static_cast<double>(file_size)))
+    throw Error("the file is truncated. Train the model again, or copy it again.");
+}
+
+// Reads numbers and sizes from the first line, and sizes the arrays.
+void read_head(const nlohmann::json& head, std::size_t file_size, TransferModel& model) {
+  model.body = std::stoull(head.at("body").get<std::string>(), nullptr, 16);
+  model.sites = head.at("sites");
+  model.poses_from = head.at("poses_from");
+  model.poses = head.at("poses");
+  model.rays = head.at("rays");
+  model.tracing_seconds = head.at("tracing_seconds");
+  model.learnt.seconds = head.at("learning_seconds");
+  model.learnt.held_back_error = head.at("held_back_error");
+  // Older files have it for networks only, in the member "net".
+  model.turning_error = head.value("turning_error", 0.0);
+  model.learnt.way = TransferMethod::rotated_linear;
+  const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components")};
+  const auto keys = static_cast<double>(n.keys), probes = static_cast<double>(n.probes),
+             dimensions = static_cast<double>(n.dimensions), components = static_cast<double>(n.components);
+  if (n.keys == 0 || n.probes == 0) throw Error("\"keys\" and \"probes\" in the first line must not be 0");
+  require_room(file_size, keys * sh::count * (components + 1), sizeof(float));
+  require_room(file_size, probes * 3 * (dimensions + 1), sizeof(double));
+  require_room(file_size, components * (dimensions + 1), sizeof(double));
+  const auto index = [](std::uint64_t value) { return static_cast<Eigen::Index>(value); };
+  LearntTransfer& learnt = model.learnt;
+  model.keys.resize(n.keys);
+  model.facing.resize(n.keys);
+  learnt.probes.resize(n.probes);
+  learnt.space.rest.resize(n.probes);
+  learnt.space.mean.resize(index(3 * n.probes));
+  learnt.space.axes.resize(index(n.dimensions), index(3 * n.probes));
+  learnt.space.deviations.resize(index(n.dimensions));
+  learnt.mean.resize(index(n.keys * sh::count));
+  learnt.components.resize(learnt.mean.size(), index(n.components));
+  learnt.linear.resize(index(n.components), index(n.dimensions + 1));
+}
+
+// The same for the network. Sizes that depend on the model are those of `model`.
+UnetTransfer::State read_net_head(const nlohmann::json& head, std::size_t file_size, TransferModel& model) {
+  UnetTransfer::State net;
+  const auto& about = head.at("net");
+  net.side = about.at("side");
+  net.channels = about.at("channels");
+  net.seconds = about.at("learning_seconds");
+  model.net_error = about.at("held_back_error");
+  model.turning_error = about.value("turning_error", model.turning_error);
+  constexpr int max_channels = 64;
+  if (net.channels < 8 || net.channels > max_channels || net.channels % 8 != 0)
+    throw Error("\"channels\" in the first line must be a multiple of 8 from 8 to 64");
+  const std::uint64_t vertices = about.at("vertices"), faces = about.at("faces");
+  require_room(file_size, static_cast<double>(vertices), 2 * sizeof(double));
+  require_room(file_size, static_cast<double>(faces), sizeof(Face));
+  require_room(file_size, static_cast<double>(unet_weight_count(net.channels)), sizeof(float));
+  net.chart.source.resize(vertices);
+  net.chart.uvs.resize(vertices);
+  net.chart.faces.resize(faces);
+  net.weights.resize(unet_weight_count(net.channels));
+  net.mean.resize(model.learnt.mean.size());
+  return net;
+}
+
+}  // namespace
+
+TransferModel transfer_model_of(std::string_view bytes) {
+  std::uint64_t hash = 0;
+  const std::size_t line = bytes.find('\n');
+  if (line == std::string_view::npos || bytes.size() < line + 1 + sizeof(hash)) throw Error("not a transfer model");
+  std::memcpy(&hash, bytes.data() + bytes.size() - sizeof(hash), sizeof(hash));
+  const std::string_view whole = bytes.substr(0, bytes.size() - sizeof(hash));
+  const auto head =
+      nlohmann::json::parse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(line), nullptr, false);
+  if (!head.is_object() || !head.contains("kind") || (head["kind"] != kind && head["kind"] != kind_with_net))
+    throw Error("not a transfer model of a supported version. Train the model again.");
+  if (content_hash(whole) != hash)
+    throw Error("the file is damaged: wrong checksum. Train the model again, or copy it again.");
+  TransferModel model;
+  std::optional<UnetTransfer::State> net;
+  try {
+    read_head(head, bytes.size(), model);
+    if (head["kind"] == kind_with_net) net = read_net_head(head, bytes.size(), model);
+  } catch (const nlohmann::json::exception&) {
+    throw Error("a field in the first line is missing or has a wrong type");
+  } catch (const std::logic_error&) {
+    throw Error("a field in the first line is missing or has a wrong type");
+  }
+  Reader reader(whole.substr(line + 1));
+  visit_numbers(model, reader);
+  if (net) visit_net(*net, reader);
+  if (!reader.done()) throw Error("unexpected data after the end of the model");
+  for (const std::uint32_t key : model.keys)
+    if (key >= model.sites) throw Error("a site index is out of range");
+  for (const std::uint32_t probe : model.learnt.probes)
+    if (probe >= model.keys.size()) throw Error("a site index is out of range");
+  try {
+    if (net) model.net.emplace(std::move(*net));
+  } catch (const std::invalid_argument& error) {
+    throw Error(error.what());
+  }
+  return model;
+}
+
+std::string transfer_model_key(const BakedObject& body, std::size_t sites) {
+  const std::array<std::uint64_t, 2> of{surface_hash(body), sites};
+  return result_key("transfermodel1", {reinterpret_cast<const char*>(of.data()), sizeof(of)});
+}
+
+}  // namespace rebake

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/light/learned/learnt_transfer.h"
+#include "mesh_ops/light/learned/unet_transfer.h"
+
+namespace rebake {
+
+/// A trained model of one body's transfer at a subset of its sites, the keys; other sites interpolate the keys.
+struct TransferModel {
+  std::uint64_t body = 0;   ///< surface_hash() of the body
+  std::uint64_t sites = 0;  ///< number of sites
+  std::string poses_from;   ///< description of the deforming edit, for users
+  int poses = 0, rays = 0;  ///< training poses, and rays per site
+  double tracing_seconds = 0;
+  std::vector<std::uint32_t> keys;  ///< site indices
+  std::vector<float> facing;        ///< per key: facing_of()
+  LearntTransfer learnt;  ///< linear model of the keys (rotated_linear); gives the trusted range also with a network
+  std::optional<UnetTransfer> net;  ///< predicts instead of `learnt`, if present; its vertices are the keys
+  double net_error = 0;             ///< relative error of the network on the held-out poses
+  double turning_error = 0;         ///< the same by rotation alone; 0 if an older file does not contain it
+  /// Relative error on the held-out poses.
+  double error() const { return net ? net_error : learnt.held_back_error; }
+
+  /// 16 coefficients per key in rotated frames. `place`: the pose in pose space; `keys_there`: the key sites in that
+  /// pose.
+  Eigen::VectorXf predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there) const;
+};
+
+/// Serialised form: a line of human-readable JSON, then numbers, then a hash over all.
+std::string bytes_of(const TransferModel& model);
+/// Parses the serialised form. Throws Error that states the fault.
+TransferModel transfer_model_of(std::string_view bytes);
+
+/// Cache key of a body's model (Results).
+std::string transfer_model_key(const BakedObject& body, std::size_t sites);
+
+}  // namespace rebake

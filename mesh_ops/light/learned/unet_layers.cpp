@@ -1,0 +1,34 @@
+#include "mesh_ops/light/learned/unet_layers.h"
+
+#include <stdexcept>
+
+namespace rebake {
+
+std::vector<UnetLayer> unet_layers(int channels) {
+  if (channels < 8 || channels % 8 != 0) throw std::invalid_argument("channels must be a positive multiple of 8");
+  std::vector<UnetLayer> result{{unet_inputs, channels, 3, 1}};
+  const auto residual = [&](int c) {
+    result.push_back({c, c, 3, 1});
+    result.push_back({c, c, 3, 1});
+  };
+  for (int l = 0; l < unet_levels; ++l) {
+    residual(channels << l);
+    result.push_back({channels << l, channels << (l + 1), 3, 2});
+  }
+  residual(channels << unet_levels);
+  for (int l = unet_levels - 1; l >= 0; --l) {
+    result.push_back({channels << (l + 1), channels << l, 3, 1});
+    residual(channels << l);
+  }
+  result.push_back({channels, unet_outputs, 1, 1});
+  return result;
+}
+
+std::size_t unet_weight_count(int channels) {
+  std::size_t count = 0;
+  for (const UnetLayer& layer : unet_layers(channels))
+    count += static_cast<std::size_t>(layer.outputs * (layer.inputs * layer.kernel * layer.kernel + 1));
+  return count;
+}
+
+}  // namespace rebake

@@ -1,0 +1,78 @@
+#include "mesh_ops/light/learned/unet_trainer.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <exception>
+#include <stdexcept>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/module.h"
+#include "mesh_ops/light/learned/unet_training.h"
+
+namespace rebake {
+
+namespace {
+
+// The training function; null, with the problem, if the module is missing.
+const ModuleSymbol& module() {
+  static const ModuleSymbol found = [] {
+    ModuleSymbol result = module_symbol("librebake_unet.so", train_unet_symbol);
+    if (result.symbol == nullptr && result.problem.empty())
+      result.problem =
+          "the training module librebake_unet.so was not found beside Rebake or in lib/rebake. It is built if "
+          "LibTorch "
+          "is installed: install libtorch-dev and libopenblas0-pthread, then build or install Rebake again.";
+    return result;
+  }();
+  return found;
+}
+
+}  // namespace
+
+bool can_train_unet() { return module().symbol != nullptr; }
+
+void require_unet_training() {
+  if (!can_train_unet()) throw Error(module().problem);
+}
+
+Unet train_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress) {
+  const auto texels = static_cast<std::size_t>(images.side) * static_cast<std::size_t>(images.side);
+  if (images.images.size() != images.poses * unet_inputs * texels ||
+      images.targets.size() != images.poses * unet_outputs * texels || images.poses == 0)
+    throw std::invalid_argument("the sizes of the training images do not match");
+  require_unet_training();
+  struct Watch {
+    const Progress& progress;
+    std::exception_ptr thrown;
+  } watch{progress, nullptr};
+  const UnetTask task{images.side,
+                      training.channels,
+                      images.poses,
+                      images.images.data(),
+                      images.targets.data(),
+                      training.epochs,
+                      training.batch,
+                      training.rate,
+                      training.seed,
+                      [](void* user, double done, double loss) {
+                        auto& to = *static_cast<Watch*>(user);
+                        try {
+                          to.progress.at(fmt::format("training, loss {:.4f}", loss), done);
+                        } catch (...) {
+                          // Exceptions must not cross the module's boundary.
+                          to.thrown = std::current_exception();
+                          return false;
+                        }
+                        return true;
+                      },
+                      &watch};
+  std::vector<float> weights(unet_weight_count(training.channels));
+  std::array<char, 512> error{};
+  const int result = reinterpret_cast<TrainUnet>(module().symbol)(&task, weights.data(), error.data(), error.size());
+  if (watch.thrown) std::rethrow_exception(watch.thrown);
+  if (result != 0) throw Error(fmt::format("training failed: {}", error.data()));
+  return {images.side, training.channels, std::move(weights)};
+}
+
+}  // namespace rebake

@@ -1,0 +1,204 @@
+// The window's state without a display: edits, previews and costs.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <set>
+#include <thread>
+
+#include "editor/edits/deform/bend.h"
+#include "editor/edits/nodes/hide.h"
+#include "editor/edits/nodes/rename.h"
+#include "editor/edits/nodes/transform.h"
+#include "editor/edits/select/select.h"
+#include "editor/edits/support.h"
+#include "editor/gui/state/editor_context.h"
+#include "mesh_ops/formats/export.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+TEST(EditorContext, MeasuresCostsInTheView) {
+  const TemporaryFolder home;  // for the journal
+  ::setenv("XDG_STATE_HOME", home.path().c_str(), 1);
+  EditorContext editor({}, [] {});
+  editor.view.width = 160;
+  editor.view.height = 120;
+  const auto wait = [&editor] {
+    while (editor.jobs.worker.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    editor.update();
+    for (const Messages::Line& line : editor.messages.log()) ASSERT_FALSE(line.failed) << line.text;
+  };
+  editor.project.open({REBAKE_SOURCE "/samples/scenes/ficus"});
+  wait();
+  editor.jobs.measure_costs(editor.view, editor.scene());
+  wait();
+  ASSERT_TRUE(editor.jobs.costs);
+  ASSERT_EQ(editor.jobs.costs->rows.size(), 7U);
+  const auto decibels = [&](std::size_t row) { return editor.jobs.costs->rows[row].values[1]; };
+  EXPECT_GT(decibels(2), decibels(1)) << "16 samples must be closer to 64 samples than 4 are";
+  EXPECT_GT(decibels(1), decibels(0));
+  EXPECT_NEAR(decibels(3), decibels(0), 0.01) << "full resolution with 1 sample equals 1 sample";
+  EXPECT_GT(decibels(3), decibels(6)) << "a third of the resolution must be worse than full resolution";
+  for (const StudyTable::Row& row : editor.jobs.costs->rows) EXPECT_GT(row.values[0], 0) << row.choice;
+  editor.jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+  wait();
+}
+
+// The state of the window without its display, with a scene of two objects.
+class EditorContextTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ::setenv("XDG_STATE_HOME", home.path().c_str(), 1);
+    editor = std::make_unique<EditorContext>(Settings{}, [] {});
+    for (const char* name : {"ball", "box"}) {
+      export_scene(scene_of(made_object({.columns = 8, .rows = 4})), home.path() / name, {});
+      editor->project.open({(home.path() / name).string()});
+    }
+    wait();
+  }
+  void TearDown() override {
+    editor->jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+    wait();
+  }
+  void wait() {
+    do {
+      while (editor->jobs.worker.busy() || editor->previews.busy())
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      editor->update();
+    } while (editor->jobs.worker.busy());
+  }
+  NodeId id(const char* name) const { return find(editor->scene(), std::string(name))->id; }
+  std::size_t selected(const char* name) const {
+    const NodePtr node = find(editor->scene(), std::string(name));
+    return node->selection ? count(*node->selection) : 0;
+  }
+  TemporaryFolder home;
+  std::unique_ptr<EditorContext> editor;
+};
+
+TEST_F(EditorContextTest, ToolsWorkOnThePickedNodes) {
+  EXPECT_EQ(editor->active, std::set<NodeId>{id("box")}) << "import must pick the new node";
+  EXPECT_EQ(editor->scope_words(), "in box");
+  Select all;
+  all.all = true;
+  editor->edit_scope(all);
+  wait();
+  EXPECT_EQ(selected("ball"), 0U);
+  EXPECT_GT(selected("box"), 0U);
+  EXPECT_EQ(editor->status, "Selected 64 triangles in box");
+  editor->active = {id("ball")};
+  EXPECT_TRUE(editor->scope(true).empty()) << "no triangle is selected in the ball";
+  EXPECT_EQ(editor->deform_targets().at(0).node->id, id("ball"));
+  EXPECT_FALSE(editor->deform_targets().at(0).selection);
+  editor->active.clear();
+  EXPECT_EQ(editor->scope_words(), "in the scene");
+  editor->edit_scope(all);
+  wait();
+  EXPECT_GT(selected("ball"), 0U);
+}
+
+TEST_F(EditorContextTest, AdjustingKeepsOneStepAndSurvivesFailure) {
+  Transform move;
+  move.node = NodeRef{id("box")};
+  move.translate = Vec3(1, 0, 0);
+  editor->edit(move);
+  wait();
+  const std::size_t steps = editor->now->steps_done;
+  move.translate = Vec3(3, 0, 0);
+  editor->adjust({move});
+  wait();
+  EXPECT_EQ(editor->now->steps_done, steps);
+  EXPECT_EQ(find(editor->scene(), id("box"))->to_parent.translation().x(), 3);
+  move.scale.value = Vec3(0, 1, 1);
+  editor->adjust({move});
+  wait();
+  EXPECT_EQ(find(editor->scene(), id("box"))->to_parent.translation().x(), 3)
+      << "a failed adjustment must keep the step";
+  EXPECT_EQ(editor->now->steps_done, steps);
+  EXPECT_FALSE(editor->messages.shown().empty());
+}
+
+TEST_F(EditorContextTest, ReleaseCommitsThePreview) {
+  Bend bend;
+  bend.target.node = NodeRef{id("box")};
+  bend.axis.axis = Vec3(1, 0, 0);
+  bend.direction = Vec3(0, 1, 0);
+  const auto drag = [&](double degrees) {
+    bend.degrees = degrees;
+    editor->show_preview({bend});
+  };
+  for (const double degrees : {5.0, 10.0, 20.0}) drag(degrees);
+  editor->edits({bend});  // waits for the preview if it is still being computed
+  wait();
+  EXPECT_EQ(editor->now->done.back().as<Bend>()->degrees, 20);
+  drag(30);
+  wait();
+  ASSERT_TRUE(editor->preview);
+  const std::vector<NodePtr> previewed = editor->preview->scene.roots;
+  editor->edits({bend});
+  wait();
+  EXPECT_EQ(editor->scene().roots, previewed);
+  // An edit that no preview was requested for is applied.
+  drag(40);
+  wait();
+  bend.degrees = 41;
+  editor->edits({bend});
+  wait();
+  const auto* last = editor->now->done.back().as<Bend>();
+  ASSERT_NE(last, nullptr);
+  EXPECT_EQ(last->degrees, 41);
+  // A dropped preview is not waited for.
+  drag(50);
+  editor->drop_preview();
+  bend.degrees = 50;
+  editor->edits({bend});
+  wait();
+  EXPECT_EQ(editor->now->steps_done, editor->now->steps.size());
+}
+
+TEST_F(EditorContextTest, ReleaseWaitingForAPreviewCanBeCancelled) {
+  std::atomic<bool> begun = false, run_step = false;
+  editor->previews.request(editor->scene().roots, [&begun, &run_step, scene = editor->scene()](const Progress&) {
+    begun = true;
+    while (!run_step) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return scene;
+  });
+  Hide hide;
+  hide.node = NodeRef{id("box")};
+  const std::size_t steps = editor->now->steps_done;
+  while (!begun)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));  // otherwise the next request would replace it
+  editor->show_preview({hide});
+  editor->edits({hide});
+  editor->jobs.worker.cancel();
+  while (editor->jobs.worker.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  run_step = true;
+  wait();
+  EXPECT_EQ(editor->now->steps_done, steps);
+  EXPECT_TRUE(find(editor->scene(), id("box"))->visible);
+  EXPECT_FALSE(editor->preview) << "a cancelled edit must not be shown";
+}
+
+TEST_F(EditorContextTest, TitlesAreImmutable) {
+  Rename rename;
+  rename.node = NodeRef{id("box")};
+  rename.name = "crate";
+  Hide hide;
+  hide.node = rename.node;
+  editor->edit(hide);
+  editor->edit(rename);
+  wait();
+  ASSERT_EQ(editor->now->steps.size(), 4U);
+  EXPECT_EQ(editor->now->steps[2].title, "Hid box") << "the title keeps the name at that time";
+  EXPECT_EQ(editor->now->steps[3].title, "Renamed to \"crate\"");
+  editor->undo();
+  wait();
+  EXPECT_EQ(editor->status, "Undid: Renamed to \"crate\"");
+  EXPECT_EQ(editor->now->steps[3].title, "Renamed to \"crate\"");
+  EXPECT_EQ(editor->now->steps_done, 3U);
+}
+
+}  // namespace
+}  // namespace rebake::test

@@ -1,0 +1,356 @@
+// Deforming objects: no cracks, unchanged data stays shared, soft borders, fold counts, handles, wraps.
+#include "mesh_ops/deform/deform_object.h"
+#include "mesh_ops/base/polar.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/deform/bends/closed_form.h"
+#include "mesh_ops/deform/cages/wrap.h"
+#include "mesh_ops/deform/handles/handles.h"
+#include "mesh_ops/formats/cage_file.h"
+#include "tests/support/made_scenes.h"
+
+namespace rebake::test {
+namespace {
+
+SpaceDeformation closed(const ClosedForm& form) {
+  return [form](const std::vector<Vec3>& points) {
+    DeformedPoints result;
+    for (const Vec3& p : points) {
+      const Deformed one = deform(form, p);
+      result.points.push_back(one.point);
+      result.jacobians.push_back(one.jacobian);
+    }
+    return result;
+  };
+}
+SpaceDeformation bend(double radians) {
+  ClosedForm form;
+  form.from = -1;
+  form.radians = radians;
+  return closed(form);
+}
+SpaceDeformation affine(const Mat3& linear) {
+  return [linear](const std::vector<Vec3>& points) {
+    DeformedPoints result;
+    for (const Vec3& p : points) result.points.push_back(linear * p);
+    result.jacobians.assign(points.size(), linear);
+    return result;
+  };
+}
+
+TriangleSet all(const BakedObject& object) { return TriangleSet(object.triangle_count(), 1); }
+TriangleSet upper_half(const BakedObject& object) {
+  TriangleSet flags;
+  for (const TextureSet& set : object.sets)
+    for (const Face& face : set.soup.faces()) {
+      const auto& p = set.soup.positions();
+      flags.push_back((p[face[0]] + p[face[1]] + p[face[2]]).y() > 0 ? 1 : 0);
+    }
+  return flags;
+}
+
+// Maps each corner position before to the distinct positions after; exactly one each if nothing is torn.
+std::map<std::array<double, 3>, std::vector<Vec3>> places(const BakedObject& before, const BakedObject& after) {
+  std::map<std::array<double, 3>, std::vector<Vec3>> result;
+  for (std::size_t s = 0; s < before.sets.size(); ++s)
+    for (std::size_t f = 0; f < before.sets[s].soup.triangle_count(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& p = before.sets[s].soup.positions()[before.sets[s].soup.faces()[f][k]];
+        const Vec3& q = after.sets[s].soup.positions()[after.sets[s].soup.faces()[f][k]];
+        auto& found = result[{p.x(), p.y(), p.z()}];
+        if (std::find(found.begin(), found.end(), q) == found.end()) found.push_back(q);
+      }
+  return result;
+}
+
+TEST(Deform, DuplicateVerticesMoveBitIdentically) {
+  const auto object = made_object();
+  const DeformedObject result = deformed(*object, Affine::Identity(), all(*object), 0, bend(1));
+  for (const auto& [place, now] : places(*object, *result.object)) EXPECT_EQ(now.size(), 1U);
+  EXPECT_NE(result.object->sets[0].soup.shared_positions(), object->sets[0].soup.shared_positions());
+  EXPECT_EQ(result.object->sets[0].soup.shared_uvs(), object->sets[0].soup.shared_uvs()) << "UVs must stay shared";
+  EXPECT_EQ(result.object->sets[0].texels, object->sets[0].texels);
+}
+
+TEST(Deform, IdentityChangesNothing) {
+  const auto object = made_object();
+  // A transform whose inverse is inexact.
+  const Affine placed =
+      Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()) * Eigen::Scaling(0.7);
+  const DeformedObject result = deformed(*object, placed, all(*object), 0, bend(0));
+  EXPECT_EQ(result.object->sets[0].soup.shared_positions(), object->sets[0].soup.shared_positions());
+  EXPECT_EQ(result.object->sets[0].soup.rotations(), nullptr);
+}
+
+TEST(Deform, SoftBorderHasNoCracksHardBorderSplits) {
+  const auto object = made_object({.columns = 32, .rows = 16});
+  const TriangleSet flags = upper_half(*object);
+  const DeformedObject soft =
+      deformed(*object, Affine::Identity(), flags, 0.5, affine(Eigen::Scaling(1.5) * Mat3::Identity()));
+  for (const auto& [place, now] : places(*object, *soft.object)) EXPECT_EQ(now.size(), 1U);
+  const DeformedObject hard =
+      deformed(*object, Affine::Identity(), flags, 0, affine(Eigen::Scaling(1.5) * Mat3::Identity()));
+  std::size_t split = 0;
+  for (const auto& [place, now] : places(*object, *hard.object)) split += now.size() > 1 ? 1 : 0;
+  EXPECT_EQ(split, 32U) << "the equator's corners";
+  // The Jacobian includes the falloff; a scaling that fades out does not fold.
+  EXPECT_EQ(soft.report.folded, 0U);
+}
+
+// The falloff is a function of the distance to the border's edges. The distance to its corners would cause waves along
+// the border, with slopes that differ by 1.5 over the falloff.
+TEST(Deform, FalloffIsUniformAlongTheBorder) {
+  // A sheet of 4 × 64 quads; the upper 48 rows rise, the border runs along x.
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+  std::vector<Face> faces;
+  for (int row = 0; row <= 64; ++row)
+    for (int column = 0; column <= 4; ++column) {
+      positions.emplace_back(column * 0.5, row / 64.0, 0);
+      uvs.emplace_back(0.1, 0.1);
+    }
+  TriangleSet flags;
+  for (std::uint32_t row = 0; row < 64; ++row)
+    for (std::uint32_t column = 0; column < 4; ++column) {
+      const std::uint32_t a = row * 5 + column;
+      faces.push_back({a, a + 1, a + 6});
+      faces.push_back({a, a + 6, a + 5});
+      flags.insert(flags.end(), 2, row >= 16 ? 1 : 0);
+    }
+  BakedObject sheet = *made_object({.columns = 4, .rows = 2});
+  sheet.sets = {sheet.sets[0]};
+  // Above the border, columns are shifted to lie between the border's corners.
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    if (positions[v].y() > 0.26) positions[v].x() += 0.25;
+  sheet.sets[0].soup = Soup(positions, uvs, faces);
+  const SpaceDeformation rise = [](const std::vector<Vec3>& points) {
+    DeformedPoints result{points, std::vector<Mat3>(points.size(), Mat3::Identity()), {}};
+    for (Vec3& p : result.points) p.z() += 1;
+    return result;
+  };
+  const auto risen = deformed(sheet, Affine::Identity(), flags, 0.3, rise).object;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const double t = std::min(1.0, (positions[v].y() - 0.25) / 0.3);
+    if (t <= 0 || positions[v].x() > 2) continue;  // beyond the border's end its corner is the nearest
+    EXPECT_NEAR(risen->sets[0].soup.positions()[v].z(), t * t * (3 - 2 * t), 1e-12) << positions[v].transpose();
+  }
+}
+
+TEST(Deform, CountsFoldsWithoutNaN) {
+  const auto object = made_object();
+  // A curvature κ = 2 folds space beyond x = 0.5.
+  ClosedForm form;
+  form.from = -1;
+  form.to = 1;
+  form.radians = 4;
+  const DeformedObject bent = deformed(*object, Affine::Identity(), all(*object), 0, closed(form));
+  EXPECT_GT(bent.report.folded, 0U);
+  EXPECT_LT(bent.report.min_determinant, 0);
+  EXPECT_GT(count(folded_triangles(*bent.object)), 0U);
+  EXPECT_LT(count(folded_triangles(*bent.object)), object->triangle_count());
+  // Collapsed to a plane, a line, a point; mirrored.
+  for (const Vec3& scale : {Vec3(1, 1, 0), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(-1, 1, 1)}) {
+    const DeformedObject flat = deformed(*object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
+    EXPECT_EQ(flat.report.folded, flat.report.points) << scale.transpose();
+    for (const TextureSet& set : flat.object->sets) {
+      for (const Vec3& p : set.soup.positions()) EXPECT_TRUE(p.allFinite());
+      if (set.soup.rotations() == nullptr) continue;
+      for (const PackedRotation& turn : *set.soup.rotations()) {
+        EXPECT_TRUE(turn.matrix().isUnitary(1e-12));
+        // Mirroring also mirrors view directions (determinant −1); collapsed vertices get a proper rotation.
+        EXPECT_EQ(turn.matrix().determinant() > 0, scale.x() >= 0) << scale.transpose();
+      }
+    }
+  }
+}
+
+TEST(Deform, MirroringTwiceIsTheIdentity) {
+  const auto object = made_object();
+  for (const Vec3& scale : {Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(-1, -1, -1)}) {
+    const DeformedObject once = deformed(*object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
+    for (const PackedRotation& turn : *once.object->sets[0].soup.rotations())
+      EXPECT_LE((turn.matrix() - Mat3(scale.asDiagonal())).norm(), 1e-14) << scale.transpose();
+    EXPECT_EQ(once.report.undefined, 0U);
+    const DeformedObject twice =
+        deformed(*once.object, Affine::Identity(), all(*object), 0, affine(scale.asDiagonal()));
+    if (twice.object->sets[0].soup.rotations() == nullptr) continue;
+    for (const PackedRotation& turn : *twice.object->sets[0].soup.rotations())
+      EXPECT_LE((turn.matrix() - Mat3::Identity()).norm(), 1e-14) << scale.transpose();
+  }
+}
+
+TEST(Deform, NonFinitePointsStay) {
+  auto object = std::make_shared<BakedObject>(*made_object());
+  auto positions = object->sets[0].soup.positions();
+  positions[0].x() = std::nan("");
+  positions[5].y() = std::numeric_limits<double>::infinity();
+  object->sets[0].soup = Soup(positions, object->sets[0].soup.uvs(), object->sets[0].soup.faces());
+  const DeformedObject result = deformed(*object, Affine::Identity(), all(*object), 0, bend(1));
+  EXPECT_EQ(result.report.not_finite, 2U);
+  EXPECT_TRUE(std::isnan(result.object->sets[0].soup.positions()[0].x()));
+  EXPECT_EQ(result.object->sets[0].soup.positions()[5].y(), positions[5].y());
+  const Cage cage = wrap({positions, object->sets[0].soup.faces()}, 0.2);
+  EXPECT_GT(cage.faces.size(), 10U);
+}
+
+TEST(Deform, RotationsAccumulateOverSeveralBends) {
+  const auto object = made_object();
+  const Mat3 quarter = Eigen::AngleAxisd(0.5, Vec3::UnitX()).toRotationMatrix();
+  const DeformedObject once = deformed(*object, Affine::Identity(), all(*object), 0, affine(quarter));
+  const DeformedObject twice = deformed(*once.object, Affine::Identity(), all(*object), 0, affine(quarter));
+  for (const PackedRotation& turn : *twice.object->sets[0].soup.rotations())
+    EXPECT_LE((turn.matrix() - quarter * quarter).norm(), 1e-14);
+  // In a node with a rotation and a non-uniform scale, rotations are stored in object space.
+  const Affine placed = Eigen::AngleAxisd(1.1, Vec3(1, 1, 0).normalized()) * Eigen::Scaling(1.0, 3.0, 0.5);
+  const DeformedObject turned = deformed(*object, placed, all(*object), 0, affine(quarter));
+  const Mat3 frame = orthogonal_factor(placed.linear());
+  for (const PackedRotation& turn : *turned.object->sets[0].soup.rotations())
+    EXPECT_LE((turn.matrix() - frame.transpose() * quarter * frame).norm(), 1e-12);
+}
+
+TEST(Wrap, EnclosesEveryTriangleAndIsClosed) {
+  const auto object = made_object();
+  const Soup& soup = object->sets[0].soup;
+  for (const double coarseness : {0.3, 0.1, 0.05}) {
+    const Cage cage = wrap({soup.positions(), soup.faces()}, coarseness);
+    EXPECT_GT(volume(cage), 0);
+    EXPECT_EQ(self_intersections(cage), 0U);
+    EXPECT_EQ(deform_points(*green_coordinates(cage), cage, cage.vertices, soup.positions(), false).outside,
+              std::vector<std::uint8_t>(soup.positions().size(), 0))
+        << "all points must be inside by Green's coordinates";
+  }
+  EXPECT_THROW(wrap({soup.positions(), soup.faces()}, 0.9), FieldError);
+  EXPECT_THROW(wrap({}, 0.1), Error);
+}
+
+TEST(Handles, HeldVerticesAreExactAndTheRestIsRigid) {
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
+  std::vector<ConstrainedVertex> held;
+  const Affine lifted = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.7, Vec3::UnitZ());
+  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v)
+    if (cage.vertices[v].y() < 0.1) held.push_back({v, lifted * cage.vertices[v]});
+  const ConstrainedCage moved = as_rigid_as_possible(cage, held, 500);
+  EXPECT_EQ(moved.free_components, 0U);
+  for (const ConstrainedVertex& h : held) EXPECT_EQ(moved.vertices[h.vertex], h.place);
+  // With one end moved rigidly and the other free, the minimum is that rigid motion.
+  for (std::size_t v = 0; v < cage.vertices.size(); ++v)
+    EXPECT_LE((moved.vertices[v] - lifted * cage.vertices[v]).norm(), 1e-13);
+  EXPECT_THROW(as_rigid_as_possible(cage, {}, 5), Error);
+}
+
+// Iterations start at the best rigid fit to the handles. From the cage at rest, ten of them would leave a rotation by 3
+// rad short by 2 to 44 % of the diagonal.
+TEST(Handles, RigidMotionsAreExactAtAnyAngle) {
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
+  for (const double angle : {1e-9, 0.5, 1.5, 3.0, 3.14159265358979})
+    for (const std::size_t count : {std::size_t{3}, std::size_t{9}, cage.vertices.size()}) {
+      const Affine motion = Eigen::Translation3d(5, -2, 3) * Eigen::AngleAxisd(angle, Vec3(1, 2, -1).normalized());
+      std::vector<ConstrainedVertex> held;
+      for (std::uint32_t v = 0; v < count; ++v) held.push_back({v * 29 % 74, motion * cage.vertices[v * 29 % 74]});
+      const ConstrainedCage moved = as_rigid_as_possible(cage, held, 10);
+      for (std::size_t v = 0; v < cage.vertices.size(); ++v)
+        ASSERT_LE((moved.vertices[v] - motion * cage.vertices[v]).norm(), 1e-12) << angle << " with " << count;
+      EXPECT_LE(moved.energy, 1e-20);
+    }
+}
+
+// Two handles define one direction at rest and one moved. Near 180° the axis of the rotation between them is
+// ill-conditioned: its error is rounding divided by the remaining angle.
+TEST(Handles, TwoHandlesRotateTheCageRigidlyUpTo180Degrees) {
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (int k = 0; k < 40; ++k) {
+    const double left = std::pow(10.0, -0.3 * k), angle = std::numbers::pi - left;
+    const std::uint32_t first = random() % 74, second = (first + 1 + random() % 73) % 74;
+    const Vec3 along = cage.vertices[second] - cage.vertices[first];
+    const Vec3 axis = along.cross(Vec3(normal(random), normal(random), normal(random))).normalized();
+    const Affine motion = Eigen::Translation3d(5, -2, 3) * Eigen::AngleAxisd(angle, axis);
+    std::vector<ConstrainedVertex> held;
+    for (const std::uint32_t v : {first, second}) held.push_back({v, motion * cage.vertices[v]});
+    const ConstrainedCage moved = as_rigid_as_possible(cage, held, 10);
+    double worst = 0;
+    for (std::size_t v = 0; v < cage.vertices.size(); ++v)
+      worst = std::max(worst, (moved.vertices[v] - motion * cage.vertices[v]).norm());
+    EXPECT_LE(worst, 1e-12 + 2e-14 / left) << "at 180° less " << left;
+    EXPECT_LE(moved.energy, 1e-20);
+  }
+}
+
+TEST(Handles, UnmovedHandlesChangeNoBit) {
+  const Cage cage = lattice_cage(Box(Vec3(0.1, 0.2, 0.3), Vec3(1, 4, 1)), 2, 8, 2);
+  std::vector<ConstrainedVertex> held;
+  for (std::uint32_t v = 0; v < cage.vertices.size(); v += 5) held.push_back({v, cage.vertices[v]});
+  EXPECT_EQ(as_rigid_as_possible(cage, held, 10).vertices, cage.vertices);
+}
+
+TEST(Handles, IterationsStopAtTheResidualAndReduceEnergy) {
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 4, 1)), 2, 8, 2);
+  std::vector<ConstrainedVertex> held;
+  const Affine turned =
+      Eigen::Translation3d(0.5, 4, 0.5) * Eigen::AngleAxisd(1.2, Vec3::UnitZ()) * Eigen::Translation3d(-0.5, -4, -0.5);
+  for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
+    if (cage.vertices[v].y() < 0.1) held.push_back({v, cage.vertices[v]});
+    if (cage.vertices[v].y() > 3.9) held.push_back({v, turned * cage.vertices[v]});
+  }
+  const ConstrainedCage few = as_rigid_as_possible(cage, held, 5), many = as_rigid_as_possible(cage, held, 1000);
+  EXPECT_EQ(few.iterations, 5);
+  EXPECT_GT(few.residual, handles_residual);
+  EXPECT_LT(many.iterations, 1000);
+  EXPECT_LE(many.residual, handles_residual);
+  EXPECT_GT(many.energy, 0);
+  EXPECT_LT(many.energy, few.energy);
+}
+
+TEST(Handles, IsolatedVertexMovesNothing) {
+  Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
+  cage.vertices.emplace_back(5, 5, 5);
+  EXPECT_THROW(as_rigid_as_possible(cage, {{8, Vec3(6, 6, 6)}}, 5), Error);
+  const ConstrainedCage moved = as_rigid_as_possible(cage, {{0, cage.vertices[0]}, {8, Vec3(6, 6, 6)}}, 5);
+  EXPECT_EQ(moved.vertices[8], Vec3(6, 6, 6));
+  EXPECT_LE((moved.vertices[7] - cage.vertices[7]).norm(), 1e-6);
+}
+
+TEST(Handles, UnheldComponentStays) {
+  Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 1, 1, 1);
+  const Cage other = lattice_cage(Box(Vec3(3, 0, 0), Vec3(4, 1, 1)), 1, 1, 1);
+  for (const Face& face : other.faces) cage.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
+  cage.vertices.insert(cage.vertices.end(), other.vertices.begin(), other.vertices.end());
+  const ConstrainedCage moved = as_rigid_as_possible(cage, {{0, Vec3(-1, 0, 0)}, {7, Vec3(1, 1, 1)}}, 5);
+  EXPECT_EQ(moved.free_components, 1U);
+  for (std::size_t v = 8; v < 16; ++v) EXPECT_EQ(moved.vertices[v], cage.vertices[v]);
+}
+
+TEST(CageFile, RoundTripsAndRejectsInvalidMeshes) {
+  TemporaryFolder folder;
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 0.3, 2)), 2, 1, 2);
+  for (const char* name : {"cage.obj", "cage.off", "cage.ply"}) {
+    write_cage(cage, folder.path() / name, {});
+    EXPECT_EQ(read_cage(folder.path() / name).faces, cage.faces) << name;
+  }
+  const auto refused = [&](const std::string& name, const std::string& text, const std::string& says) {
+    write_text(folder.path() / name, text);
+    try {
+      read_cage(folder.path() / name);
+      ADD_FAILURE() << name << " was read";
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+  };
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\n";
+  refused("open.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 5 4 2\n", "open");
+  refused("quads.obj", corners + "f 1 2 3 4\n", "not triangles");
+  refused("fan.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 2 5\n", "manifold");
+  refused("cage.stl", "solid\n", "ends in .obj");
+  refused("none.ply", "ply\n", "contains no readable mesh");
+}
+
+}  // namespace
+}  // namespace rebake::test
