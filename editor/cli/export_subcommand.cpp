@@ -31,8 +31,10 @@ void describe_export(SubcommandDescription& command) {
   command.option("folder", options->folder, "MobileNeRF folder, Rebake scene or project", "FOLDER|SCENE|PROJECT")
       .required();
   command.option("-o,--out", options->out, "output folder; replaced atomically", "FOLDER").required();
-  command.option("--layout", options->layout, "layout of the output", "split|chunked|unsplit [as read]")
-      .one_of(std::vector<std::string>{"split", "chunked", "unsplit"});
+  const std::vector<std::string> layouts = Codec<Layout>::type().choices, ways = Codec<FuseMethod>::type().choices;
+  command
+      .option("--layout", options->layout, "layout of the output", fmt::format("{} [as read]", fmt::join(layouts, "|")))
+      .one_of(layouts);
   command
       .option("--page-size", options->page_size, "maximum side of repacked textures, in texels",
               "N [4096, or that of the largest source texture]")
@@ -46,8 +48,9 @@ void describe_export(SubcommandDescription& command) {
   command.option("--width", options->width, "plain: maximum width of the decoder's hidden layers",
                  "auto|16|24|32|N [auto]");
   command
-      .option("--way", options->way, "plain: method of fusing the decoders", "keep|train|new|side_by_side [the best]")
-      .one_of(std::vector<std::string>{"keep", "train", "new", "side_by_side"});
+      .option("--way", options->way, "plain: method of fusing the decoders",
+              fmt::format("{} [the best]", fmt::join(ways, "|")))
+      .one_of(ways);
   command.option("--keep", options->keep, "plain: node that stays bit for bit", "NODE|none|auto [auto]");
   command.option("--psnr", options->psnr, "plain: target quality; fitting stops there", "dB [40, and fits all texels]");
   command.option("--seconds", options->seconds, "plain: time limit of fitting", "S [no limit]");

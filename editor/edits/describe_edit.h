@@ -21,9 +21,6 @@ struct NamedNodes {
   void operator()(const char*, const T&, Need, const char*, Unit = Unit::none) {}
 };
 
-/// "select_like" → "Select like:".
-std::string words_of(const char* op);
-
 /// Builds the EditType of the edit struct T.
 template <class T, class Describe>
 EditType type_of(const char* help, Describe) {
@@ -41,7 +38,7 @@ EditType type_of(const char* help, Describe) {
     else if constexpr (requires { T::done; })
       return T::done;
     else
-      return words_of(T::op);
+      return words_of(T::op) + ":";
   };
   type.title = [](const void* edit) -> std::string {
     if constexpr (requires(const T& one) { whole_title(one); })

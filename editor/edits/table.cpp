@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "editor/edits/describe_edit.h"
@@ -69,13 +67,6 @@ std::span<const EditType* const> edit_types() {
   static const EditType* const table[] = {REBAKE_EDITS(REBAKE_ENTRY)};
 #undef REBAKE_ENTRY
   return table;
-}
-
-std::string described::words_of(const char* op) {
-  std::string words = op;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-  return words + ":";
 }
 
 Edit read_edit(const nlohmann::json& object, const Scene& scene) {

@@ -1,6 +1,7 @@
 #include "editor/fields/visitors.h"
 
 #include <fmt/format.h>
+#include <cctype>
 
 #include <algorithm>
 #include <cmath>
@@ -56,14 +57,63 @@ const json& part(const json& value, const char* key, std::initializer_list<const
   return *found;
 }
 
+// The words of an enumeration: one table serves reading, writing and help.
 template <class E>
-E word(const json& value, std::initializer_list<std::pair<const char*, E>> words) {
-  std::vector<std::string> known;
+using Words = std::vector<std::pair<const char*, E>>;
+
+template <class E>
+FieldType type_of(const Words<E>& words) {
+  std::vector<std::string> choices;
+  for (const auto& [text, meaning] : words) choices.emplace_back(text);
+  return choice_type(choices);
+}
+
+template <class E>
+E read_word(const json& value, const Words<E>& words) {
+  std::string all;
   for (const auto& [text, meaning] : words) {
-    if (value.is_string() && value.get_ref<const std::string&>() == text) return meaning;
-    known.emplace_back(text);
+    if (value == text) return meaning;
+    all += (all.empty() ? "" : ", ") + std::string(text);
   }
-  throw Error(fmt::format("must be one of {}", fmt::join(known, ", ")));
+  throw Error("must be one of " + all);
+}
+
+template <class E>
+json write_word(E value, const Words<E>& words) {
+  return std::ranges::find(words, value, [](const auto& word) { return word.second; })->first;
+}
+
+const Words<FuseMethod>& fuse_method_words() {
+  static const Words<FuseMethod> words{{"keep", FuseMethod::keep},
+                                       {"train", FuseMethod::train},
+                                       {"new", FuseMethod::scratch},
+                                       {"side_by_side", FuseMethod::side_by_side}};
+  return words;
+}
+
+const Words<SelectMode>& select_mode_words() {
+  static const Words<SelectMode> words{{"set", SelectMode::set},
+                                       {"add", SelectMode::add},
+                                       {"remove", SelectMode::remove},
+                                       {"intersect", SelectMode::intersect}};
+  return words;
+}
+
+const Words<CoordinateFrame>& frame_words() {
+  static const Words<CoordinateFrame> words{
+      {"world", CoordinateFrame::world}, {"node", CoordinateFrame::node}, {"bounds", CoordinateFrame::bounds}};
+  return words;
+}
+
+const Words<Axes>& axes_words() {
+  static const Words<Axes> words{{"360", Axes::y_up}, {"forward", Axes::forward}};
+  return words;
+}
+
+const Words<Layout>& layout_words() {
+  static const Words<Layout> words{
+      {"split", Layout::split}, {"chunked", Layout::chunked}, {"unsplit", Layout::unsplit}};
+  return words;
 }
 
 }  // namespace
@@ -295,19 +345,9 @@ FuseWidth Codec<FuseWidth>::read(const json& value, const Scene& scene) {
 }
 json Codec<FuseWidth>::write(const FuseWidth& value) { return value.neurons ? json(*value.neurons) : json(); }
 
-FieldType Codec<FuseMethod>::type() { return choice_type({"keep", "train", "new", "side_by_side"}); }
-FuseMethod Codec<FuseMethod>::read(const json& value, const Scene&) {
-  return word<FuseMethod>(value, {{"keep", FuseMethod::keep},
-                                  {"train", FuseMethod::train},
-                                  {"new", FuseMethod::scratch},
-                                  {"side_by_side", FuseMethod::side_by_side}});
-}
-json Codec<FuseMethod>::write(const FuseMethod& value) {
-  return value == FuseMethod::keep      ? "keep"
-         : value == FuseMethod::train   ? "train"
-         : value == FuseMethod::scratch ? "new"
-                                        : "side_by_side";
-}
+FieldType Codec<FuseMethod>::type() { return type_of(fuse_method_words()); }
+FuseMethod Codec<FuseMethod>::read(const json& value, const Scene&) { return read_word(value, fuse_method_words()); }
+json Codec<FuseMethod>::write(const FuseMethod& value) { return write_word(value, fuse_method_words()); }
 
 FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::other, "list of names", "Sequence[str]", {}}; }
 std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
@@ -321,43 +361,26 @@ json Codec<std::vector<std::string>>::write(const std::vector<std::string>& valu
   return value.empty() ? json() : json(value);
 }
 
-FieldType Codec<SelectMode>::type() { return choice_type({"set", "add", "remove", "intersect"}); }
-SelectMode Codec<SelectMode>::read(const json& value, const Scene&) {
-  return word<SelectMode>(value, {{"set", SelectMode::set},
-                                  {"add", SelectMode::add},
-                                  {"remove", SelectMode::remove},
-                                  {"intersect", SelectMode::intersect}});
-}
-json Codec<SelectMode>::write(const SelectMode& value) {
-  static const char* const names[] = {"set", "add", "remove", "intersect"};
-  return names[static_cast<int>(value)];
-}
+FieldType Codec<SelectMode>::type() { return type_of(select_mode_words()); }
+SelectMode Codec<SelectMode>::read(const json& value, const Scene&) { return read_word(value, select_mode_words()); }
+json Codec<SelectMode>::write(const SelectMode& value) { return write_word(value, select_mode_words()); }
 
-FieldType Codec<CoordinateFrame>::type() { return choice_type({"world", "node", "bounds"}); }
+FieldType Codec<CoordinateFrame>::type() { return type_of(frame_words()); }
 CoordinateFrame Codec<CoordinateFrame>::read(const json& value, const Scene&) {
-  return word<CoordinateFrame>(
-      value, {{"world", CoordinateFrame::world}, {"node", CoordinateFrame::node}, {"bounds", CoordinateFrame::bounds}});
+  return read_word(value, frame_words());
 }
-json Codec<CoordinateFrame>::write(const CoordinateFrame& value) {
-  static const char* const names[] = {"world", "node", "bounds"};
-  return names[static_cast<int>(value)];
-}
+json Codec<CoordinateFrame>::write(const CoordinateFrame& value) { return write_word(value, frame_words()); }
 
-FieldType Codec<Axes>::type() { return choice_type({"360", "forward"}); }
+FieldType Codec<Axes>::type() { return type_of(axes_words()); }
 Axes Codec<Axes>::read(const json& value, const Scene&) {
   if (value == 360) return Axes::y_up;
-  return word<Axes>(value, {{"360", Axes::y_up}, {"forward", Axes::forward}});
+  return read_word(value, axes_words());
 }
-json Codec<Axes>::write(const Axes& value) { return value == Axes::forward ? "forward" : "360"; }
+json Codec<Axes>::write(const Axes& value) { return write_word(value, axes_words()); }
 
-FieldType Codec<Layout>::type() { return choice_type({"split", "chunked", "unsplit"}); }
-Layout Codec<Layout>::read(const json& value, const Scene&) {
-  return word<Layout>(value, {{"split", Layout::split}, {"chunked", Layout::chunked}, {"unsplit", Layout::unsplit}});
-}
-json Codec<Layout>::write(const Layout& value) {
-  static const char* const names[] = {"split", "chunked", "unsplit"};
-  return names[static_cast<int>(value)];
-}
+FieldType Codec<Layout>::type() { return type_of(layout_words()); }
+Layout Codec<Layout>::read(const json& value, const Scene&) { return read_word(value, layout_words()); }
+json Codec<Layout>::write(const Layout& value) { return write_word(value, layout_words()); }
 
 FieldType Codec<Camera>::type() {
   return {FieldKind::other,
@@ -417,6 +440,13 @@ const char* to_string(Unit unit) {
     default:
       return "";
   }
+}
+
+std::string words_of(const std::string& identifier) {
+  std::string words = identifier;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
 }
 
 std::string notation_of(const FieldInfo& field) {

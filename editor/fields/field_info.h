@@ -16,6 +16,9 @@ struct FieldInfo {
   bool required = false;
 };
 
+/// An identifier as words: "select_like" → "Select like".
+std::string words_of(const std::string& identifier);
+
 /// Name of the unit, for users; empty for Unit::none.
 const char* to_string(Unit unit);
 /// Notation of the field's value with its unit: "number, in degrees".

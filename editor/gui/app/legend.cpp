@@ -9,14 +9,14 @@
 
 namespace rebake {
 
-void draw_legend(const EditorContext& editor, ImDrawList& list, const ImVec2& origin) {
+void draw_legend(const ViewState& view, ImDrawList& list, const ImVec2& origin) {
   std::string text;
-  if (editor.view.cut > 0 && editor.view.inspect == Guides::Inspect::none) {
+  if (view.cut > 0 && view.inspect == Guides::Inspect::none) {
     draw_label(list, {origin.x + px(12), origin.y + px(12)},
-               fmt::format("Near clipping plane at {:.4g}. Alt + wheel moves it.", editor.view.cut));
+               fmt::format("Near clipping plane at {:.4g}. Alt + wheel moves it.", view.cut));
     return;
   }
-  switch (editor.view.inspect) {
+  switch (view.inspect) {
     case Guides::Inspect::none:
       return;
     case Guides::Inspect::wireframe:
@@ -29,8 +29,8 @@ void draw_legend(const EditorContext& editor, ImDrawList& list, const ImVec2& or
       text = "Texture sets: one colour per set";
       break;
     case Guides::Inspect::channel:
-      text = fmt::format("Feature channel {}{}: black is 0, white is 255", editor.view.channel,
-                         editor.view.channel == 0 ? " (opacity)" : "");
+      text = fmt::format("Feature channel {}{}: black is 0, white is 255", view.channel,
+                         view.channel == 0 ? " (opacity)" : "");
       break;
     case Guides::Inspect::overdraw:
       text = "Overdraw: brighter where more triangles overlap";

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "editor/gui/state/editor_context.h"
+#include "editor/gui/state/view_state.h"
 
 struct ImDrawList;
 struct ImVec2;
@@ -9,6 +9,6 @@ namespace rebake {
 
 /// Draws a legend at the viewport's upper left corner `origin`: the meaning of the colours of an inspection mode, or
 /// the distance of the cut. Draws nothing in the normal mode without a cut.
-void draw_legend(const EditorContext& editor, ImDrawList& list, const ImVec2& origin);
+void draw_legend(const ViewState& view, ImDrawList& list, const ImVec2& origin);
 
 }  // namespace rebake

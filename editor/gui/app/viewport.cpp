@@ -186,7 +186,7 @@ Guides Viewport::guides(const EditorContext& editor) const {
   result.dimmed = editor.selected_out_of_scope();
   result.inspect = editor.view.inspect;
   result.channel = editor.view.channel;
-  if (editor.settings.grid) add_grid(editor, result.lines);
+  if (editor.settings.grid) add_grid(editor.scene(), editor.shown().ground, result.lines);
   // Picked nodes are outlined while the tool works on whole nodes.
   const bool nodes = editor.tools.kind == ToolKind::pick ||
                      ((editor.tools.kind == ToolKind::move || editor.tools.kind == ToolKind::rotate ||
@@ -286,7 +286,7 @@ void Viewport::picture(EditorContext& editor) {
     Guides before;
     before.inspect = editor.view.inspect;
     before.channel = editor.view.channel;
-    if (editor.settings.grid) add_grid(editor, before.lines);
+    if (editor.settings.grid) add_grid(editor.scene(), editor.shown().ground, before.lines);
     before_texture_ =
         before_->show(with_viewport_background(editor.project.imported, editor), view, {}, before, false).texture;
   }
@@ -496,7 +496,7 @@ void Viewport::draw(EditorContext& editor, const std::vector<std::array<double, 
   list.PushClipRect(origin, {origin.x + size.x, origin.y + size.y}, true);
   list.ChannelsSplit(2);
   list.ChannelsSetCurrent(1);
-  draw_legend(editor, list, origin);
+  draw_legend(editor.view, list, origin);
   if (editor.view.marked) {
     const ImVec2 at = on_screen(editor.view.marked->cwiseProduct(Vec2(editor.view.width, editor.view.height)), origin);
     announce::point("largest error", at);
@@ -504,7 +504,8 @@ void Viewport::draw(EditorContext& editor, const std::vector<std::array<double, 
     list.AddCircle(at, px(14), IM_COL32(255, 230, 60, 255), 0, px(2.5F));
     draw_label(list, {at.x + px(22), at.y - px(8)}, "largest error");
   }
-  const bool on_axes = draw_axes(editor, list, {origin.x + size.x, origin.y}, pointer.inside && !tool(editor).busy());
+  const bool on_axes =
+      draw_axes(editor.view.camera, list, {origin.x + size.x, origin.y}, pointer.inside && !tool(editor).busy());
   if (on_axes || (editor.view.wipe && draw_wipe(editor, list, origin, pointer))) {
     pointer.inside = false;
     pointer.pressed = false;

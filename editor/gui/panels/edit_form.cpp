@@ -129,14 +129,6 @@ void EditForm::draw_count(const EditorContext& editor) const {
 
 namespace {
 
-// "select_like" → "Select like".
-std::string words_of(const std::string& name) {
-  std::string words = name;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-  return words;
-}
-
 void draw_flag(const FieldInfo& field, json& values) {
   const char* name = field.name.c_str();
   bool value = values.contains(name) ? values[name].get<bool>() : field.initial == "true";

@@ -386,7 +386,7 @@ void FileDialog::draw_export_options(EditorContext& editor, const Form& form) {
             "Merges all objects into one folder with one decoder that any MobileNeRF viewer can show.");
     if (plain_) {
       ImGui::SameLine();
-      if (ui::button("Compare...##compare")) preview_.begin(editor, wanted_nodes(editor));
+      if (ui::button("Compare...##compare")) preview_.begin(editor.view, editor.jobs, wanted_nodes(editor));
       ui::tip("Compare...", "", "Compares decoders by error and frame time before the export.");
       ui::hint(preview_.words());
     }
@@ -498,7 +498,7 @@ void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
   const std::string action = asks ? "Replace" : several > 1 ? fmt::format("Open {}", several) : question.action;
   done = ui::primary_button((action + "##confirm").c_str(), {width, 0}) || done;
   if (done) done = confirm(editor, path, form, replaces);
-  preview_.draw(editor);
+  preview_.draw(editor.jobs);
   if (cancelled) editor.project.after_save = nullptr;
   if (done || cancelled) {
     editor.dialogs.path = FileDialogPurpose::none;

@@ -21,7 +21,7 @@ class FileDialog {
   void draw(EditorContext& editor, Thumbnails& thumbnails);
 
   /// Closes the comparison of plain folders; returns false if it is not open.
-  bool close_comparison(EditorContext& editor) { return preview_.leave(editor); }
+  bool close_comparison(EditorContext& editor) { return preview_.leave(editor.jobs); }
   /// Whether the desktop's own file dialog is open, which runs in another process.
   bool waits() const { return desktop_ != nullptr; }
 

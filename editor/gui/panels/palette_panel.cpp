@@ -5,6 +5,7 @@
 #include <cctype>
 #include <sstream>
 
+#include "editor/fields/field_info.h"
 #include "editor/gui/panels/panels.h"
 #include "editor/gui/state/commands.h"
 #include "editor/gui/ui/announce.h"
@@ -21,12 +22,7 @@ std::string plain(std::string text) {
 }
 
 // Title of the form of an edit, e.g. "All fields: Select picture…".
-std::string notation_of(const std::string& op) {
-  std::string words = op;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
-  return "All fields: " + words + "…";
-}
+std::string form_title(const std::string& op) { return "All fields: " + words_of(op) + "…"; }
 
 struct Entry {
   std::string title, keys, help;
@@ -41,7 +37,7 @@ std::vector<Entry> entries(const EditorContext& editor, const std::string& filte
     all.push_back(
         {std::string(command.menu) + ": " + command.title, key_names(command.keys_of(editor)), command.help, &command});
   for (const EditType* type : edit_types())
-    all.push_back({notation_of(type->op), "", type->help, nullptr, nullptr, type->op});
+    all.push_back({form_title(type->op), "", type->help, nullptr, nullptr, type->op});
   for (const auto& [name, camera] : editor.scene().views)
     all.push_back({"Stored view: " + name, "", "", nullptr, &camera});
   // Entries must contain all words, in any order. Underscores count as spaces.

@@ -51,7 +51,7 @@ FuseOptions quick_options(const Scene& scene) {
 
 }  // namespace
 
-void PlainPreview::begin(EditorContext& editor, std::vector<NodeRef> nodes) {
+void PlainPreview::begin(const ViewState& view, Jobs& jobs, std::vector<NodeRef> nodes) {
   open_ = true;
   nodes_ = std::move(nodes);
   measured_ = nullptr;
@@ -60,13 +60,13 @@ void PlainPreview::begin(EditorContext& editor, std::vector<NodeRef> nodes) {
   problem_.clear();
   auto measured = std::make_shared<Measured>();
   constexpr double widest = 520;
-  const double scale = std::min(1.0, widest / std::max(editor.view.width, editor.view.height));
-  measured->view = {editor.view.camera, std::max(1, static_cast<int>(editor.view.width * scale)),
-                    std::max(1, static_cast<int>(editor.view.height * scale)), 4};
+  const double scale = std::min(1.0, widest / std::max(view.width, view.height));
+  measured->view = {view.camera, std::max(1, static_cast<int>(view.width * scale)),
+                    std::max(1, static_cast<int>(view.height * scale)), 4};
   measured->nodes = nodes_;
   wanted_ = std::make_shared<bool>(true);
   working_ = true;
-  editor.jobs.worker.start(
+  jobs.worker.start(
       "comparing plain folders",
       [measured](Session& session) {
         measured->scene = with_only(session.scene(), measured->nodes);
@@ -84,12 +84,12 @@ void PlainPreview::begin(EditorContext& editor, std::vector<NodeRef> nodes) {
         for (const FuseCandidate& candidate : plan.candidates) measured->rows.push_back({candidate.trial, {}, 0, 0});
         measured->chosen = plan.chosen;
       },
-      [this, &editor, measured, wanted = wanted_] {
+      [this, &jobs, measured, wanted = wanted_] {
         if (!*wanted) return;
         working_ = false;
         measured_ = measured;
         exact_.emplace(measured->reference);
-        if (!measured->exact) show(editor, measured->chosen);
+        if (!measured->exact) show(jobs, measured->chosen);
       },
       [this, wanted = wanted_] {
         if (!*wanted) return;
@@ -99,7 +99,7 @@ void PlainPreview::begin(EditorContext& editor, std::vector<NodeRef> nodes) {
 }
 
 // Fits texels with one Gauss–Newton iteration: quick, and an export only refines the result.
-void PlainPreview::show(EditorContext& editor, std::size_t row) {
+void PlainPreview::show(Jobs& jobs, std::size_t row) {
   row_ = row;
   const auto measured = measured_;
   if (measured->rows[row].picture) {
@@ -110,7 +110,7 @@ void PlainPreview::show(EditorContext& editor, std::size_t row) {
   // The window reads `rows` while the job runs, so the job fills a copy.
   auto seen = std::make_shared<Measured::Row>(measured->rows[row]);
   working_ = true;
-  editor.jobs.worker.start(
+  jobs.worker.start(
       "rendering the plain folder",
       [measured, seen, row](Session& session) {
         FuseOptions options = quick_options(measured->scene);
@@ -137,7 +137,7 @@ void PlainPreview::show(EditorContext& editor, std::size_t row) {
       });
 }
 
-void PlainPreview::draw_table(EditorContext& editor) {
+void PlainPreview::draw_table(Jobs& jobs) {
   if (!ImGui::BeginTable("ways", 6, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_BordersInnerH)) return;
   ImGui::TableSetupColumn("decoder", 0, 3.2F);
   ImGui::TableSetupColumn("width");
@@ -152,7 +152,7 @@ void PlainPreview::draw_table(EditorContext& editor) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     const std::string name = notation_of(row.trial.way);
-    if (ImGui::Selectable(name.c_str(), row_ == k, ImGuiSelectableFlags_SpanAllColumns) && row_ != k) show(editor, k);
+    if (ImGui::Selectable(name.c_str(), row_ == k, ImGuiSelectableFlags_SpanAllColumns) && row_ != k) show(jobs, k);
     announce::item(fmt::format("way {}", k));
     // No tooltip on the selected row: it would only cover the others.
     if (row_ != k)
@@ -200,11 +200,11 @@ void PlainPreview::draw_wipe(float width) {
   caption(plain_ ? fmt::format("plain folder: {:.1f} dB", measured_->rows[shown_].psnr_db) : "plain folder ...", true);
 }
 
-bool PlainPreview::leave(EditorContext& editor) {
+bool PlainPreview::leave(Jobs& jobs) {
   if (!open_) return false;
   open_ = false;
   *wanted_ = false;
-  if (std::exchange(working_, false)) editor.jobs.worker.cancel();
+  if (std::exchange(working_, false)) jobs.worker.cancel();
   measured_ = nullptr;
   exact_.reset();
   plain_.reset();
@@ -216,7 +216,7 @@ std::string PlainPreview::words() const {
   return fmt::format("{}, width {}", notation_of(*choice_.way), *choice_.width.neurons);
 }
 
-bool PlainPreview::draw(EditorContext& editor) {
+bool PlainPreview::draw(Jobs& jobs) {
   if (!open_ && !ImGui::IsPopupOpen("###plain")) return false;
   if (open_ && !ImGui::IsPopupOpen("###plain")) ImGui::OpenPopup("###plain");
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -244,7 +244,7 @@ bool PlainPreview::draw(EditorContext& editor) {
   if (!problem_.empty()) {
     ui::wrapped(problem_, theme().danger);
   } else if (!measured_) {
-    const Worker::Status status = editor.jobs.worker.status();
+    const Worker::Status status = jobs.worker.status();
     ui::muted("Measuring a sample of the texels. This takes a few seconds.");
     ImGui::ProgressBar(static_cast<float>(status.share), {-1, 0}, status.what.c_str());
   } else if (measured_->exact) {
@@ -256,7 +256,7 @@ bool PlainPreview::draw(EditorContext& editor) {
                        ImGui::GetTextLineHeightWithSpacing() * (static_cast<float>(measured_->rows.size()) + 4);
     const float aspect = static_cast<float>(measured_->view.width) / static_cast<float>(measured_->view.height);
     draw_wipe(std::clamp(most * aspect, px(160), ImGui::GetContentRegionAvail().x));
-    draw_table(editor);
+    draw_table(jobs);
     ui::muted(fmt::format(
         "Texels: PSNR of sampled texels. Image: PSNR of this image, in which texels are blended. The original takes "
         "{:.1f} ms per frame.",
@@ -275,7 +275,7 @@ bool PlainPreview::draw(EditorContext& editor) {
     chosen = true;
   }
   ImGui::EndDisabled();
-  if (cancelled || chosen) leave(editor);
+  if (cancelled || chosen) leave(jobs);
   ImGui::EndPopup();
   return chosen;
 }

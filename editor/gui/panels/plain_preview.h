@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "editor/gui/state/editor_context.h"
+#include "editor/gui/state/jobs.h"
+#include "editor/gui/state/project.h"
+#include "editor/gui/state/view_state.h"
 #include "render/picture_texture.h"
 
 namespace rebake {
@@ -16,11 +18,11 @@ class PlainPreview {
  public:
   /// Opens the dialog and measures on a sample of the texels, in the current view. `nodes`: nodes to export; empty for
   /// all.
-  void begin(EditorContext& editor, std::vector<NodeRef> nodes);
+  void begin(const ViewState& view, Jobs& jobs, std::vector<NodeRef> nodes);
   /// Draws the dialog if it is open; returns true in the frame in which the user confirms a choice.
-  bool draw(EditorContext& editor);
+  bool draw(Jobs& jobs);
   /// Closes the dialog in the next frame and cancels its job; returns false if it is not open.
-  bool leave(EditorContext& editor);
+  bool leave(Jobs& jobs);
   /// Resets the choice to automatic.
   void forget() { choice_ = {}; }
   const Project::PlainChoice& choice() const { return choice_; }
@@ -30,8 +32,8 @@ class PlainPreview {
  private:
   struct Measured;
   /// Selects a row and renders its image if there is none yet.
-  void show(EditorContext& editor, std::size_t row);
-  void draw_table(EditorContext& editor);
+  void show(Jobs& jobs, std::size_t row);
+  void draw_table(Jobs& jobs);
   /// Draws the two images with a draggable divider.
   void draw_wipe(float width);
 

@@ -17,7 +17,7 @@ namespace rebake {
 
 namespace {
 
-void traced_visibility(EditorContext& editor, const std::string& name) {
+void look_through(EditorContext& editor, const std::string& name) {
   editor.view.camera = editor.scene().views.at(name);
 }
 
@@ -59,7 +59,7 @@ void ViewsPanel::draw_card(EditorContext& editor, const Scene& drawn, Thumbnails
     renaming_ = name_ = name;
     focus_name_ = true;
   } else if (clicked) {
-    traced_visibility(editor, name);
+    look_through(editor, name);
   }
   ui::tip(name, "", "Click to move the camera there, double-click to rename.");
   ImDrawList& list = *ImGui::GetWindowDrawList();

@@ -325,7 +325,8 @@ void BendTool::add_guides(const EditorContext& editor, Guides& guides) const {
   // Shade the soft border. During drags, or with too many triangles, draw a ring of its width at the lower limit
   // instead.
   if (!(falloff_ > 0)) return;
-  if (held_ == Handle::none && !editor.preview) guides.triangles = falloff_overlay_.of(editor, here->targets, falloff_);
+  if (held_ == Handle::none && !editor.preview)
+    guides.triangles = falloff_overlay_.of(editor.scene(), here->targets, falloff_);
   if (guides.triangles) return;
   const Vec3 middle = here->at(from_), u = here->spine.along.unitOrthogonal(), v = here->spine.along.cross(u);
   constexpr int corners = 32;

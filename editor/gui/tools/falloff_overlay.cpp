@@ -45,8 +45,7 @@ void add(const PlacedNode& placed, const TriangleSet& flags, double falloff, std
 
 }  // namespace
 
-Guides::Triangles FalloffOverlay::of(const EditorContext& editor, const std::vector<DeformTarget>& targets,
-                                     double falloff) {
+Guides::Triangles FalloffOverlay::of(const Scene& scene, const std::vector<DeformTarget>& targets, double falloff) {
   std::vector<NodeRef> nodes;
   for (const DeformTarget& target : targets) {
     if (!target.selection) return nullptr;  // a whole object has no border
@@ -54,21 +53,21 @@ Guides::Triangles FalloffOverlay::of(const EditorContext& editor, const std::vec
   }
   if (!(falloff > 0) || targets.empty()) return nullptr;
   const auto same = [](const NodeRef& a, const NodeRef& b) { return a.id == b.id; };
-  if (roots_ == editor.scene().roots && falloff_ == falloff &&
+  if (roots_ == scene.roots && falloff_ == falloff &&
       std::equal(nodes.begin(), nodes.end(), nodes_.begin(), nodes_.end(), same))
     return made_;
-  roots_ = editor.scene().roots;
+  roots_ = scene.roots;
   nodes_ = nodes;
   falloff_ = falloff;
   made_.reset();
   std::size_t all = 0;
-  for (const PlacedNode& placed : placed_nodes(editor.scene()))
+  for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.node->object && placed.node->selection) all += placed.node->object->triangle_count();
   if (all > max_triangles) return nullptr;
   try {
     auto triangles = std::make_shared<std::vector<Guides::Triangle>>();
     for (const DeformTarget& target : targets) {
-      const DeformSet set = deform_set(editor.scene(), target);
+      const DeformSet set = deform_set(scene, target);
       for (std::size_t k = 0; k < set.nodes.size(); ++k) add(set.nodes[k], set.flags[k], falloff, *triangles);
     }
     made_ = std::move(triangles);

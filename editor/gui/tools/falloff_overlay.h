@@ -1,6 +1,6 @@
 #pragma once
 
-#include "editor/gui/state/editor_context.h"
+#include "editor/edits/deform/deforming.h"
 #include "render/graph/guides.h"
 
 namespace rebake {
@@ -8,9 +8,9 @@ namespace rebake {
 /// Overlay that shows a deformation's falloff on the selected triangles: the less a corner will move, the more opaque.
 class FalloffOverlay {
  public:
-  /// Triangles of the overlay for the current scene. Null without a falloff, for whole objects, and if objects with a
+  /// Triangles of the overlay for a scene. Null without a falloff, for whole objects, and if objects with a
   /// selection have more than 100,000 triangles. Caches the last result.
-  Guides::Triangles of(const EditorContext& editor, const std::vector<DeformTarget>& targets, double falloff);
+  Guides::Triangles of(const Scene& scene, const std::vector<DeformTarget>& targets, double falloff);
 
  private:
   std::vector<NodePtr> roots_;

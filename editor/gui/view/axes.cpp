@@ -10,11 +10,11 @@
 
 namespace rebake {
 
-bool draw_axes(EditorContext& editor, ImDrawList& list, const ImVec2& corner, bool over) {
+bool draw_axes(Camera& camera, ImDrawList& list, const ImVec2& corner, bool over) {
   const float arm = px(32), knob = px(9);
   const ImVec2 middle{corner.x - arm - px(18), corner.y + arm + px(18)};
   const announce::Part part("axes");
-  const Mat3 rows = world_to_camera(editor.view.camera);
+  const Mat3 rows = world_to_camera(camera);
   struct Knob {
     double depth;
     ImVec2 at;
@@ -52,7 +52,7 @@ bool draw_axes(EditorContext& editor, ImDrawList& list, const ImVec2& corner, bo
     const float dx = mouse.x - one.at.x, dy = mouse.y - one.at.y;
     if (dx * dx + dy * dy > knob * knob || !over) continue;
     hovered = true;
-    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) editor.view.camera = along_axis(editor.view.camera, one.axis);
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) camera = along_axis(camera, one.axis);
   }
   return hovered;
 }

@@ -4,11 +4,10 @@
 
 namespace rebake {
 
-void add_grid(const EditorContext& editor, std::vector<Guides::Line>& lines) {
-  const Box box = world_bounds(editor.scene());
+void add_grid(const Scene& scene, const Ground& ground, std::vector<Guides::Line>& lines) {
+  const Box box = world_bounds(scene);
   const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
   const double step = std::pow(10, std::floor(std::log10(size)));
-  const Ground& ground = editor.shown().ground;
   const Mat3 frame = ground_frame(ground);
   // Grid corners lie on multiples of the step; the centre of the grid is the one nearest to the scene's centre.
   const Vec3 middle = box.isEmpty() ? Vec3::Zero() : Vec3(frame.transpose() * box.center() / step);
