@@ -13,9 +13,10 @@ namespace rebake {
 Scene plain_scene(const Scene& scene, const Lighting& lighting, const FuseOptions& options, PlainReport& report,
                   const Progress& progress);
 
-/// The same, but chosen by pictures of `picture_size`² pixels. If the worst object misses `options.psnr_db`, up to two
-/// other candidates are fitted, and the one whose worst object is best is returned. Fills in `report`. If `renderer`
-/// throws DeviceError, calls `no_device` and returns the first candidate unmeasured, or the best so far.
+/// As plain_scene(), but compares pictures of `picture_size`² pixels. If the worst object misses `options.psnr_db`, up
+/// to two other candidates (pairs of fuse method and width) are fitted. Returns the one whose worst object has the
+/// highest PSNR. Fills in `report`. If `renderer` throws DeviceError, calls `no_device` and returns the first candidate
+/// unmeasured, or the best so far.
 Scene best_plain_scene(const Scene& scene, const Lighting& lighting, const FuseOptions& options,
                        const std::function<Renderer&()>& renderer,
                        const std::function<void(const DeviceError&)>& no_device, PlainReport& report,

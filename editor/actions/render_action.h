@@ -9,7 +9,7 @@ namespace rebake {
 /// Renders the scene to a PNG.
 struct RenderAction {
   static constexpr const char* op = "render";
-  std::string out;
+  std::string out;               ///< PNG file to write
   std::string view;              ///< name of a stored view; empty: `camera`
   std::optional<Camera> camera;  ///< nothing: a camera that frames the scene
   int width = 800;               ///< pixels

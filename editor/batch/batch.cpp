@@ -17,6 +17,7 @@
 #include <optional>
 #include <set>
 
+#include "editor/document/sources.h"
 #include "editor/script/script_inputs.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -78,8 +79,7 @@ Mark read_mark(const fs::path& path) { return fs::exists(path) ? mark_from(read_
 
 bool is_unchanged(const Mark::File& file) {
   try {
-    return hash_text(fs::is_directory(file.path) ? folder_hash(file.path) : content_hash(read_file(file.path))) ==
-           file.content;
+    return hash_text(content_hash_at(file.path)) == file.content;
   } catch (const FileError&) {
     return false;
   }
@@ -330,8 +330,8 @@ class BatchRun {
     for (const auto& [reader, path] : found.protected_paths) list += reader + '\0' + path.string() + '\0';
     // A unique name, since another batch with the same output folder has other scenes.
     sources_ = state_folder(options) / fmt::format("sources-{}-of-{}-{}", options.shard, options.shards, ::getpid());
-    write_file_atomically(sources_, list, {});
     claims_.emplace(state_folder(options) / "claims");
+    write_file_atomically(sources_, list, {});
   }
   ~BatchRun() {
     std::error_code ignored;

@@ -27,10 +27,10 @@ EditType type_of(const char* help, Describe) {
   EditType type{};
   type.op = T::op;
   type.help = help;
-  type.selects = requires { T::selects; };
-  type.needs_selection = requires { T::needs_selection; };
-  type.makes_nodes = requires { T::makes_nodes; };
-  type.deforms = requires { T::deforms; };
+  if constexpr (requires { T::selects; }) type.selects = T::selects;
+  if constexpr (requires { T::needs_selection; }) type.needs_selection = T::needs_selection;
+  if constexpr (requires { T::makes_nodes; }) type.makes_nodes = T::makes_nodes;
+  if constexpr (requires { T::deforms; }) type.deforms = T::deforms;
   if constexpr (requires { T::adjustable; }) type.adjustable = T::adjustable;
   type.done = [](const void* edit) -> std::string {
     if constexpr (requires(const T& one) { done_words(one); })

@@ -29,11 +29,12 @@ struct Outcome {
   Outcome(Scene made, Report said) : scene(std::move(made)), report(std::move(said)) {}
 };
 
-/// A field of an edit that can be adjusted after the edit, and the form of its value: `factor` a number near 1, `turn`
-/// a rotation, `factors` a scale per axis.
+/// A field that can be adjusted after the edit. Forms of its value: `number`: a whole number of at least 1; `length`:
+/// scene units (a field "falloff" is not negative); `factor`: 1 is neutral; `rotation`: a quaternion; `factors`: a
+/// scale per axis.
 struct AdjustableField {
-  enum class Kind { number, length, degrees, factor, point, factors, turn };
-  const char* field;
+  enum class Kind { number, length, degrees, factor, point, factors, rotation };
+  const char* field;  ///< its name in JSON
   const char* label;
   Kind kind;
 };
@@ -50,8 +51,8 @@ struct EditType {
   bool makes_nodes;      ///< adds nodes, which are then picked
   bool deforms;          ///< deforms triangles, which its title counts
   std::span<const AdjustableField> adjustable;
-  /// The past tense for titles of steps ("Hid", "Bent by 20°:"): a function done_words(edit), else T::done, else from
-  /// `op`.
+  /// Verb in the past tense for titles of steps: "Hid", "Bent by 20°:". Given by a function done_words(edit), or by
+  /// T::done. Without both, it is made from `op`.
   std::string (*done)(const void* edit);
   /// The title of a step with this edit: a function whole_title(edit). Empty: the title is `done` and what changed.
   std::string (*title)(const void* edit);

@@ -76,6 +76,35 @@ Coefficients unpacked(const Eigen::VectorXf& values) {
   return result;
 }
 
+// Adds a row per way: time of the light, and the error of the transfer on each set of test poses. `every_pose`: bytes
+// of the transfer of all training poses.
+void measure(const StudyInput& input, const PosedBody& body, const std::vector<Way>& ways,
+             const std::array<std::vector<TestPose>, 3>& tests, double every_pose, StudyTable& table) {
+  const std::size_t points = body.rest.vertices.size();
+  for (const Way& way : ways) {
+    input.progress.at(way.name, 0.9);
+    StudyTable::Row row{body.name + ": " + way.name, {}};
+    row.values.push_back(median_milliseconds(input.frames, [&] { way.light(tests[0].front()); }));
+    for (const std::vector<TestPose>& set : tests) {
+      double off = 0, all = 0;
+      for (const TestPose& test : set) {
+        const Coefficients found = way.transfer(test);
+        for (std::size_t i = 0; i < points; ++i) {
+          off += (found[i] - test.truth.transfer.sites[i]).squaredNorm();
+          all += test.truth.transfer.sites[i].squaredNorm();
+        }
+      }
+      row.values.push_back(100 * std::sqrt(off / all));
+    }
+    row.values.push_back(way.bytes / 1024);
+    row.values.push_back(way.bytes > 0 ? every_pose / way.bytes : 0);
+    row.values.push_back(way.tracing_seconds);
+    row.values.push_back(way.learning_seconds);
+    row.values.push_back(100 * way.undersampled);
+    table.rows.push_back(std::move(row));
+  }
+}
+
 void study_body(const StudyInput& input, const PosedBody& body, StudyTable& table) {
   const TracedPose rest = traced_pose(body.rest, body.rest, truth_rays);
   const auto tests = make_test_poses(body, input.progress);
@@ -143,28 +172,7 @@ void study_body(const StudyInput& input, const PosedBody& body, StudyTable& tabl
                     [=](const TestPose& t) { inside(t) ? learnt.light(t) : along.light(t); }, learnt.bytes,
                     learnt.tracing_seconds, learnt.learning_seconds});
   }
-  for (const Way& way : ways) {
-    input.progress.at(way.name, 0.9);
-    StudyTable::Row row{body.name + ": " + way.name, {}};
-    row.values.push_back(median_milliseconds(input.frames, [&] { way.light(tests[0].front()); }));
-    for (const std::vector<TestPose>& set : tests) {
-      double off = 0, all = 0;
-      for (const TestPose& test : set) {
-        const Coefficients found = way.transfer(test);
-        for (std::size_t i = 0; i < points; ++i) {
-          off += (found[i] - test.truth.transfer.sites[i]).squaredNorm();
-          all += test.truth.transfer.sites[i].squaredNorm();
-        }
-      }
-      row.values.push_back(100 * std::sqrt(off / all));
-    }
-    row.values.push_back(way.bytes / 1024);
-    row.values.push_back(way.bytes > 0 ? every_pose / way.bytes : 0);
-    row.values.push_back(way.tracing_seconds);
-    row.values.push_back(way.learning_seconds);
-    row.values.push_back(100 * way.undersampled);
-    table.rows.push_back(std::move(row));
-  }
+  measure(input, body, ways, tests, every_pose, table);
 }
 
 }  // namespace

@@ -90,16 +90,4 @@ Cage read_cage(const std::filesystem::path& path) {
   }
 }
 
-void write_cage(const Cage& cage, const std::filesystem::path& path, const SourceGuard& guard) {
-  const std::string format = format_of(path);
-  Mesh mesh;
-  std::vector<Mesh::VertexHandle> handles;
-  for (const Vec3& v : cage.vertices) handles.push_back(mesh.add_vertex({v.x(), v.y(), v.z()}));
-  for (const Face& face : cage.faces) mesh.add_face({handles[face[0]], handles[face[1]], handles[face[2]]});
-  std::ostringstream text;
-  if (!OpenMesh::IO::write_mesh(mesh, text, format, OpenMesh::IO::Options::Default, 17))
-    throw FileError(path, "the cage cannot be written");
-  write_file_atomically(path, text.str(), guard);
-}
-
 }  // namespace rebake

@@ -18,7 +18,7 @@ struct Format {
   const char* name;    ///< identifier in scripts and on the command line
   const char* title;   ///< display name
   const char* help;    ///< its use: "keeps every node"
-  const char* marker;  ///< for people, the file by which one recognises it: "mlp.json", ".glb"
+  const char* marker;  ///< main file of a folder, which stands for it ("mlp.json"), or extension of a file (".glb")
   bool is_folder;      ///< a folder; otherwise a single file
   bool has_colors;     ///< whether it stores colours, so that an export reports how pictures change
 

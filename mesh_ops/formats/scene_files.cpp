@@ -16,7 +16,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-bool is_scene(const fs::path& path) { return format_at(path) != nullptr; }
+// False for folders that cannot be examined, for want of permission or other reasons: nothing reads them either.
+bool is_scene(const fs::path& path) {
+  try {
+    return format_at(path) != nullptr;
+  } catch (const fs::filesystem_error&) {
+    return false;
+  }
+}
 
 }  // namespace
 

@@ -23,7 +23,8 @@ ManifoldMesh manifold_mesh(const std::vector<Vec3>& vertices, const std::vector<
 /// The vertices of an edge, lower index first.
 std::pair<std::uint32_t, std::uint32_t> vertices_of(const ManifoldMesh& mesh, ManifoldMesh::EdgeHandle edge);
 
-/// While it exists, messages of OpenMesh are collected instead of printed; it reports some errors in no other way.
+/// While it exists, messages of OpenMesh are collected instead of printed; it reports some errors in no other way. The
+/// redirection is global: objects must not be nested, nor exist on two threads.
 class OpenMeshMessages {
  public:
   OpenMeshMessages();

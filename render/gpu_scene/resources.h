@@ -14,7 +14,7 @@ struct SurfaceKey {
   const void* uvs = nullptr;
   const void* faces = nullptr;
   const void* texels = nullptr;
-  bool coded = false;  ///< whether its texels are stored as coded blocks
+  bool coded = false;  ///< whether its texels are losslessly compressed (CodedTexels)
   auto operator<=>(const SurfaceKey&) const = default;
 };
 SurfaceKey surface_key(const TextureSet& set, bool coded);
@@ -22,7 +22,7 @@ SurfaceKey surface_key(const TextureSet& set, bool coded);
 /// Identity of a GpuMesh: addresses of the shared arrays of its texture set, and its surface.
 struct MeshKey {
   const void* positions = nullptr;
-  const void* turns = nullptr;
+  const void* turns = nullptr;  ///< rotations per vertex; null if there are none
   SurfaceKey surface;
   auto operator<=>(const MeshKey&) const = default;
 };

@@ -20,15 +20,14 @@ struct TexelSite {
 
 double six_decimals(double value) { return std::round(value * 1e6) / 1e6; }
 
-}  // namespace
+// A cell of a patch that has opaque texels.
+struct Quad {
+  std::size_t patch;
+  int column, row;
+  std::vector<TexelSite> texels;
+};
 
-std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField& field, const BakeOptions& options,
-                                        const Progress& progress) {
-  struct Quad {
-    std::size_t patch;
-    int column, row;
-    std::vector<TexelSite> texels;
-  };
+std::vector<Quad> quads_of(const Model& model) {
   std::vector<Quad> quads;
   for (std::size_t p = 0; p < model.patches.size(); ++p) {
     const Patch& patch = model.patches[p];
@@ -43,36 +42,12 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
         if (!quad.texels.empty()) quads.push_back(std::move(quad));
       }
   }
-  const int per_row = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(quads.size())))));
-  const int width = per_row * cell, height = (static_cast<int>(quads.size()) + per_row - 1) / per_row * cell;
+  return quads;
+}
 
-  std::vector<Vec3> positions;
-  std::vector<Vec2> uvs;
-  std::vector<Face> faces;
-  std::vector<TexelSite> sites;
-  for (std::size_t q = 0; q < quads.size(); ++q) {
-    const Quad& quad = quads[q];
-    const Patch& patch = model.patches[quad.patch];
-    const int left = static_cast<int>(q) % per_row * cell, top = static_cast<int>(q) / per_row * cell;
-    const auto first = static_cast<std::uint32_t>(positions.size());
-    for (int corner = 0; corner < 4; ++corner) {
-      const int i = corner % 2, j = corner / 2;
-      const Vec3 p = patch.point((quad.column + i) / static_cast<double>(patch.columns),
-                                 (quad.row + j) / static_cast<double>(patch.rows));
-      positions.emplace_back(six_decimals(p.x()), six_decimals(p.y()), six_decimals(p.z()));
-      uvs.emplace_back(six_decimals((left + 0.5 + i * (cell - 1)) / width),
-                       six_decimals(1 - (top + 0.5 + j * (cell - 1)) / height));
-    }
-    faces.push_back({first, first + 1, first + 3});
-    faces.push_back({first, first + 3, first + 2});
-    for (TexelSite site : quad.texels) {
-      site.x += left;
-      site.y += top;
-      sites.push_back(site);
-    }
-  }
-
-  const auto observations = static_cast<std::size_t>(options.observations);
+// What the decoder and the features are fitted to: colours of all texels, seen by the same eyes.
+FitProblem fit_problem(const Model& model, const RadianceField& field, const std::vector<TexelSite>& sites,
+                       std::size_t observations) {
   FitProblem problem{sites.size(), observations, {}, {}, {}};
   problem.hints.resize(sites.size());
   problem.fed_directions.resize(sites.size() * observations);
@@ -111,6 +86,44 @@ std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField&
       }
     }
   });
+  return problem;
+}
+
+}  // namespace
+
+std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField& field, const BakeOptions& options,
+                                        const Progress& progress) {
+  const std::vector<Quad> quads = quads_of(model);
+  const int per_row = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(quads.size())))));
+  const int width = per_row * cell, height = (static_cast<int>(quads.size()) + per_row - 1) / per_row * cell;
+
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+  std::vector<Face> faces;
+  std::vector<TexelSite> sites;
+  for (std::size_t q = 0; q < quads.size(); ++q) {
+    const Quad& quad = quads[q];
+    const Patch& patch = model.patches[quad.patch];
+    const int left = static_cast<int>(q) % per_row * cell, top = static_cast<int>(q) / per_row * cell;
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    for (int corner = 0; corner < 4; ++corner) {
+      const int i = corner % 2, j = corner / 2;
+      const Vec3 p = patch.point((quad.column + i) / static_cast<double>(patch.columns),
+                                 (quad.row + j) / static_cast<double>(patch.rows));
+      positions.emplace_back(six_decimals(p.x()), six_decimals(p.y()), six_decimals(p.z()));
+      uvs.emplace_back(six_decimals((left + 0.5 + i * (cell - 1)) / width),
+                       six_decimals(1 - (top + 0.5 + j * (cell - 1)) / height));
+    }
+    faces.push_back({first, first + 1, first + 3});
+    faces.push_back({first, first + 3, first + 2});
+    for (TexelSite site : quad.texels) {
+      site.x += left;
+      site.y += top;
+      sites.push_back(site);
+    }
+  }
+
+  const FitProblem problem = fit_problem(model, field, sites, static_cast<std::size_t>(options.observations));
   const FitResult fitted = fit(problem, {.epochs = options.epochs}, progress);
 
   std::vector<Texel> texels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),

@@ -8,7 +8,7 @@ namespace rebake {
 struct Transform {
   static constexpr const char* op = "transform";
   static constexpr AdjustableField adjustable[] = {{"translate", "Move", AdjustableField::Kind::point},
-                                                   {"rotate", "Rotate", AdjustableField::Kind::turn},
+                                                   {"rotate", "Rotate", AdjustableField::Kind::rotation},
                                                    {"scale", "Scale", AdjustableField::Kind::factors}};
   NodeRef node;
   bool selection = false;  ///< only the selected triangles

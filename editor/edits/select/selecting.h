@@ -44,7 +44,7 @@ struct WeldingField {
   void check() const;
 };
 
-/// Fields that define when triangles are connected, see Joining.
+/// Fields that define when triangles are connected, see Connectivity.
 struct ConnectivityFields {
   WeldingField welding;
   double gap = 0;  ///< opaque texels at most this far apart are connected, in object units; 0: only across edges

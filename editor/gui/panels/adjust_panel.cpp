@@ -30,9 +30,9 @@ Vec3 point_of(const json& value, double otherwise) {
 // Draws number fields for a field and writes changes to `object`. `unit`: change of a length per pixel of drag.
 ui::Changed draw_values(const AdjustableField& field, json& object, double unit) {
   const json held = object.contains(field.field) ? object.at(field.field) : json();
-  if (field.kind == Kind::point || field.kind == Kind::factors || field.kind == Kind::turn) {
+  if (field.kind == Kind::point || field.kind == Kind::factors || field.kind == Kind::rotation) {
     Vec3 value = point_of(held, field.kind == Kind::factors ? 1 : 0);
-    if (field.kind == Kind::turn) {
+    if (field.kind == Kind::rotation) {
       const auto q = held.is_array() && held.size() == 4
                          ? Eigen::Quaterniond(held[0].get<double>(), held[1].get<double>(), held[2].get<double>(),
                                               held[3].get<double>())
@@ -42,7 +42,7 @@ ui::Changed draw_values(const AdjustableField& field, json& object, double unit)
         if (std::abs(angle) < 1e-10) angle = 0;
     }
     const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
-    const double step = field.kind == Kind::point ? unit : field.kind == Kind::turn ? 1 : 0.01;
+    const double step = field.kind == Kind::point ? unit : field.kind == Kind::rotation ? 1 : 0.01;
     ui::Changed result = ui::Changed::nothing;
     for (int axis = 0; axis < 3; ++axis) {
       if (axis > 0) ImGui::SameLine();
@@ -51,7 +51,7 @@ ui::Changed draw_values(const AdjustableField& field, json& object, double unit)
       if (changed != ui::Changed::nothing) result = changed;
     }
     if (result != ui::Changed::dragged && result != ui::Changed::finished) return result;
-    if (field.kind == Kind::turn) {
+    if (field.kind == Kind::rotation) {
       const Eigen::Quaterniond q(rotation_of(value));
       object[field.field] = {q.w(), q.x(), q.y(), q.z()};
     } else {

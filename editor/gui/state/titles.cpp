@@ -138,7 +138,8 @@ std::string title_of(const std::vector<Edit>& group, const Scene& before, const 
     const std::string of = together(named(group, before, after));
     return done + " " + of + (change.added.empty() ? "" : " as " + together(change.added));
   }
-  return done + " " + together(named(group, before, after));
+  const std::vector<std::string> names = named(group, before, after);
+  return done + " " + together(names.empty() ? change.names : names);
 }
 
 std::string title_of(const std::vector<Edit>& group, const Scene& later) {

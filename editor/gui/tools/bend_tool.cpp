@@ -75,7 +75,7 @@ BendTool::SpineInputs BendTool::current_inputs(const EditorContext& editor) cons
 }
 
 bool BendTool::last_edit_follows_spine(const EditorContext& editor) const {
-  const std::optional<DeformAxisTarget> here = bent(editor);
+  const std::optional<DeformAxisTarget> here = current_target(editor);
   return here && !editor.now->done.empty() && deformation_along(editor.now->done.back(), here->spine) != nullptr;
 }
 
@@ -117,7 +117,7 @@ void BendTool::find_spine(EditorContext& editor) {
       });
 }
 
-std::optional<BendTool::DeformAxisTarget> BendTool::bent(const EditorContext& editor) const {
+std::optional<BendTool::DeformAxisTarget> BendTool::current_target(const EditorContext& editor) const {
   if (!found_) return std::nullopt;
   DeformAxisTarget bent{editor.deform_targets(), *found_};
   if (bent.targets.empty()) return std::nullopt;
@@ -232,7 +232,7 @@ void BendTool::pointer(EditorContext& editor, const ViewportProjection& lens, co
   if (held_ == Handle::none) {
     find_spine(editor);
     if (!pointer.pressed || !pointer.inside) return;
-    drag_target_ = bent(editor);
+    drag_target_ = current_target(editor);
     if (!drag_target_) return;
     held_ = handle_at(editor, *drag_target_, lens, pointer.at);
     began_ = now_ = pointer.at;
@@ -287,7 +287,7 @@ std::string BendTool::readout(const Edit& edit) {
 
 void BendTool::draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer,
                     ImDrawList& list, const ImVec2& origin) const {
-  const std::optional<DeformAxisTarget> here = held_ != Handle::none ? drag_target_ : bent(editor);
+  const std::optional<DeformAxisTarget> here = held_ != Handle::none ? drag_target_ : current_target(editor);
   if (!here) return;
   const announce::Part part("bend");
   const Handle hot = held_ != Handle::none ? held_
@@ -312,7 +312,7 @@ void BendTool::draw(const EditorContext& editor, const ViewportProjection& lens,
 }
 
 void BendTool::add_guides(const EditorContext& editor, Guides& guides) const {
-  const std::optional<DeformAxisTarget> here = held_ != Handle::none ? drag_target_ : bent(editor);
+  const std::optional<DeformAxisTarget> here = held_ != Handle::none ? drag_target_ : current_target(editor);
   if (!here) return;
   // A polyline, since the spine may be curved.
   constexpr int pieces = 24;
@@ -376,7 +376,7 @@ void BendTool::options(EditorContext& editor) {
   }
   if (found_ && found_->touched >= interleaved)
     ui::hint("Unselected triangles among the selection stay in place.");
-  else if (bent(editor))
+  else if (current_target(editor))
     ui::hint("Drag the pink handle.");
   else
     ui::hint(editor.jobs.worker.busy() ? "Searching for the spine…"

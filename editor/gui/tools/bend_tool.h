@@ -21,6 +21,7 @@ class BendTool final : public ViewTool {
   void cancel(EditorContext& editor) override;
 
  private:
+  /// Handles: the limits of the deformed range, and the tip, beyond the far end. The foot, the fixed end, has none.
   enum class Handle { none, from, to, tip };
   /// The deformed triangles and the axis along them.
   struct DeformAxisTarget {
@@ -41,7 +42,7 @@ class BendTool final : public ViewTool {
     bool operator==(const SpineInputs&) const = default;
   };
   /// The current targets and axis; nothing without a spine.
-  std::optional<DeformAxisTarget> bent(const EditorContext& editor) const;
+  std::optional<DeformAxisTarget> current_target(const EditorContext& editor) const;
   /// Searches for the spine again if its inputs have changed.
   void find_spine(EditorContext& editor);
   /// Whether the document's last edit was made along the current spine.

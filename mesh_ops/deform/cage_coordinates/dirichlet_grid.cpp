@@ -186,16 +186,12 @@ std::vector<std::uint8_t> DirichletGrid::find_inside(const std::vector<Vec3>& ve
   return inside;
 }
 
-void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
-                              const Progress& progress) {
-  // Intersections of grid lines with faces. A line through an edge intersects both of its faces, never neither.
-  struct Hit {
-    std::size_t node;
-    std::size_t direction;
-    double share;
-    SurfacePoint point;
-  };
-  std::vector<Hit> hits;
+// Intersections of grid lines with faces. A line through an edge intersects both of its faces, never neither.
+std::vector<DirichletGrid::LinkCut> DirichletGrid::line_cuts(const GridDomain& domain,
+                                                             const std::vector<Vec3>& vertices,
+                                                             const std::vector<Face>& faces,
+                                                             const Progress& progress) const {
+  std::vector<LinkCut> hits;
   const auto add = [&](std::ptrdiff_t node, std::size_t direction, double share, const SurfacePoint& point) {
     if (domain.slot_of[static_cast<std::size_t>(node)] != none)
       hits.push_back({static_cast<std::size_t>(node), direction, std::max(share, min_cut), point});
@@ -252,10 +248,16 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
         }
     }
   }
-  // If rounding missed the intersection between an inside and an outside node, the surface point nearest to the closer
-  // node stands in.
+  return hits;
+}
+
+// If rounding missed the intersection between an inside and an outside node, the surface point nearest to the closer
+// node stands in. Returns a flag per slot and direction: whether the link is cut.
+std::vector<std::uint8_t> DirichletGrid::add_missed_cuts(const GridDomain& domain, const std::vector<Vec3>& vertices,
+                                                         const std::vector<Face>& faces,
+                                                         std::vector<LinkCut>& hits) const {
   std::vector<std::uint8_t> cut(domain.node_of.size() * grid_directions, 0);
-  for (const Hit& hit : hits) cut[domain.slot_of[hit.node] * grid_directions + hit.direction] = 1;
+  for (const LinkCut& hit : hits) cut[domain.slot_of[hit.node] * grid_directions + hit.direction] = 1;
   for (std::size_t slot = 0; slot < domain.node_of.size(); ++slot)
     for (std::size_t direction = 0; direction < grid_directions; ++direction) {
       const std::size_t node = domain.node_of[slot];
@@ -271,6 +273,13 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
            {nearest_[beside], nearest_on(place_of(beside), vertices[face[0]], vertices[face[1]], vertices[face[2]])}});
       cut[slot * grid_directions + direction] = 1;
     }
+  return cut;
+}
+
+void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
+                              const Progress& progress) {
+  std::vector<LinkCut> hits = line_cuts(domain, vertices, faces, progress);
+  const std::vector<std::uint8_t> cut = add_missed_cuts(domain, vertices, faces, hits);
   domain.cuts_of.assign(domain.node_of.size(), none);
   for (std::uint32_t slot = 0; slot < domain.node_of.size(); ++slot) {
     const auto* flags = &cut[slot * grid_directions];
@@ -280,7 +289,7 @@ void DirichletGrid::cut_links(GridDomain& domain, const std::vector<Vec3>& verti
   }
   domain.cuts.resize(domain.cut_slots.size());
   cut_points_.assign(domain.cut_slots.size(), {none, none, none, none, none, none});
-  for (const Hit& hit : hits) {
+  for (const LinkCut& hit : hits) {
     const std::uint32_t row = domain.cuts_of[domain.slot_of[hit.node]];
     double& nearest = domain.cuts[row][hit.direction];
     std::uint32_t& point = cut_points_[row][hit.direction];

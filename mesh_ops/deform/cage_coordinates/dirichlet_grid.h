@@ -71,6 +71,17 @@ class DirichletGrid {
   void find_distances(const std::vector<Vec3>& vertices, const std::vector<Face>& faces, const Progress& progress);
   std::vector<std::uint8_t> find_inside(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
                                         const Progress& progress) const;
+  /// Where the surface cuts the link from a node towards a neighbour, as a share of its length.
+  struct LinkCut {
+    std::size_t node;
+    std::size_t direction;
+    double share;
+    SurfacePoint point;
+  };
+  std::vector<LinkCut> line_cuts(const GridDomain& domain, const std::vector<Vec3>& vertices,
+                                 const std::vector<Face>& faces, const Progress& progress) const;
+  std::vector<std::uint8_t> add_missed_cuts(const GridDomain& domain, const std::vector<Vec3>& vertices,
+                                            const std::vector<Face>& faces, std::vector<LinkCut>& hits) const;
   void cut_links(GridDomain& domain, const std::vector<Vec3>& vertices, const std::vector<Face>& faces,
                  const Progress& progress);
   void extrapolate_outwards(const std::vector<Vec3>& vertices, const std::vector<Face>& faces,

@@ -351,6 +351,21 @@ TEST(SourceGuard, ProtectsObjectsBehindALinkToTheirParent) {
 }
 
 // Photographs beside a scene must not hide its links.
+TEST(SourceGuard, IgnoresFoldersThatCannotBeExamined) {
+  const TemporaryFolder folder;
+  export_scene(scene_of(made_object()), folder.path() / "scene", {});
+  // A path so long that no file in it can be named.
+  fs::path deep = folder.path() / "tree";
+  for (constexpr std::size_t longest = 4090, part = 200; deep.native().size() < longest;) {
+    deep /= std::string(std::min(part, longest - deep.native().size() - 1), 'a');
+    fs::create_directories(deep);
+  }
+  fs::create_directory_symlink(folder.path() / "tree", folder.path() / "scene/more");
+  SourceGuard guard;
+  EXPECT_NO_THROW(protect_scene(guard, folder.path() / "scene"));
+  EXPECT_THROW(guard.check_file(folder.path() / "scene/mlp.json"), FileError);
+}
+
 TEST(SourceGuard, FindsLinksBesideManyFiles) {
   const TemporaryFolder folder;
   const fs::path texture = folder.path() / "textures/a.png";

@@ -2,6 +2,7 @@
 #include "mesh_ops/deform/deform_object.h"
 #include "mesh_ops/base/polar.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -328,12 +329,33 @@ TEST(Handles, UnheldComponentStays) {
   for (std::size_t v = 8; v < 16; ++v) EXPECT_EQ(moved.vertices[v], cage.vertices[v]);
 }
 
-TEST(CageFile, RoundTripsAndRejectsInvalidMeshes) {
+TEST(CageFile, ReadsThreeFormatsAndRejectsInvalidMeshes) {
   TemporaryFolder folder;
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 0.3, 2)), 2, 1, 2);
+  // A text file from a header, a line per vertex and a line per face.
+  const auto write = [&](const char* name, const std::string& header, const char* vertex, const char* face,
+                         std::uint32_t first) {
+    std::string text = header;
+    for (const Vec3& v : cage.vertices) text += fmt::format("{}{} {} {}\n", vertex, v.x(), v.y(), v.z());
+    for (const Face& f : cage.faces)
+      text += fmt::format("{}{} {} {}\n", face, f[0] + first, f[1] + first, f[2] + first);
+    write_text(folder.path() / name, text);
+  };
+  const std::size_t vertices = cage.vertices.size(), faces = cage.faces.size();
+  write("cage.obj", "", "v ", "f ", 1);
+  write("cage.off", fmt::format("OFF\n{} {} 0\n", vertices, faces), "", "3 ", 0);
+  write(
+      "cage.ply",
+      fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+                  "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                  vertices, faces),
+      "", "3 ", 0);
   for (const char* name : {"cage.obj", "cage.off", "cage.ply"}) {
-    write_cage(cage, folder.path() / name, {});
     EXPECT_EQ(read_cage(folder.path() / name).faces, cage.faces) << name;
+    const std::vector<Vec3> read = read_cage(folder.path() / name).vertices;
+    ASSERT_EQ(read.size(), cage.vertices.size());
+    for (std::size_t v = 0; v < read.size(); ++v)
+      EXPECT_LE((read[v] - cage.vertices[v]).norm(), 1e-7) << name << ": OpenMesh reads coordinates as floats";
   }
   const auto refused = [&](const std::string& name, const std::string& text, const std::string& says) {
     write_text(folder.path() / name, text);

@@ -349,20 +349,5 @@ TEST(Pack, SmallTexturesSplitIntoSeveral) {
   EXPECT_EQ(triangles, object->triangle_count());
 }
 
-TEST(Formats, RoundTrip) {
-  const Scene scene = scene_of(made_object(), "ball");
-  const TemporaryFolder folder;
-  for (const Format& format : formats()) {
-    if (format.read == nullptr || format.write == nullptr) continue;
-    const auto out = folder.path() / format.name;
-    format.write(scene, out, {}, {});
-    EXPECT_TRUE(format.recognises(out)) << format.name;
-    EXPECT_EQ(format.read(out, Axes::y_up, {}).roots[0]->object->triangle_count(), 256U) << format.name;
-    EXPECT_EQ(&format_named(format.name), &format);
-  }
-  EXPECT_THROW(format_named("glb"), FieldError);
-  EXPECT_THROW(format_named("rebake").write(scene, folder.path() / "x", {Layout::split, {}}, {}), FieldError);
-}
-
 }  // namespace
 }  // namespace rebake::test
