@@ -103,7 +103,7 @@ void CageTool::make(EditorContext& editor) {
           bound->partners[static_cast<std::size_t>(axis)] = partners(bound->cage.vertices, axis);
         *made = std::move(bound);
       },
-      [this, &editor, made] {
+      [this, made] {
         bound_ = *made;
         moved_ = bound_->cage.vertices;
         steps_ = {moved_};
