@@ -7,7 +7,7 @@
 #include "mesh_ops/formats/images/picture_codecs.h"
 #include "mesh_ops/formats/images/rgba_png.h"
 
-#if __has_include(<spng.h>)
+#ifdef REBAKE_SPNG
 #include <spng.h>
 #endif
 
@@ -48,7 +48,7 @@ void decode_by_openimageio(benchmark::State& state) {
 }
 BENCHMARK(decode_by_openimageio)->Unit(benchmark::kMillisecond);
 
-#ifdef SPNG_VERSION_MAJOR
+#ifdef REBAKE_SPNG
 void decode_by_libspng(benchmark::State& state) {
   std::vector<std::uint8_t> texels;
   for (auto _ : state) {

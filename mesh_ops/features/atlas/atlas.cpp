@@ -6,12 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <unordered_map>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/shelf_packer.h"
-#include "mesh_ops/base/union_find.h"
 
 namespace rebake {
 
