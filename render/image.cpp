@@ -1,5 +1,7 @@
 #include "render/image.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -8,11 +10,53 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/images/picture_codecs.h"
 #include "mesh_ops/formats/images/png_writer.h"
+#include "mesh_ops/scene/scene_light.h"
 
 namespace rebake {
 
 namespace {
+
 constexpr int compression_level = 6;  // zlib's default
+
+// Formats that OpenImageIO writes. PNGs are encoded here: loading OpenImageIO takes longer than most pictures.
+struct WrittenFormat {
+  std::string_view extension;
+  const char* name;   // in OpenImageIO
+  bool linear_light;  // half floats
+};
+constexpr std::array written_formats{WrittenFormat{".jpg", "jpeg", false}, WrittenFormat{".jpeg", "jpeg", false},
+                                     WrittenFormat{".webp", "webp", false}, WrittenFormat{".exr", "openexr", true}};
+
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// The bytes of a picture file. Throws FileError.
+std::string encoded(const Image& image, const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  const auto format = std::find_if(written_formats.begin(), written_formats.end(),
+                                   [&](const WrittenFormat& one) { return one.extension == extension; });
+  if (format == written_formats.end()) return encode_png(image.width, image.height, 3, image.rgb, compression_level);
+  const PictureCodecs& codecs = picture_codecs(path);
+  std::string bytes, error;
+  bool done = false;
+  if (format->linear_light) {
+    std::array<float, 256> light{};
+    for (std::size_t k = 0; k < light.size(); ++k)
+      light[k] = static_cast<float>(to_linear(static_cast<double>(k) / 255));
+    std::vector<float> pixels(image.rgb.size());
+    std::transform(image.rgb.begin(), image.rgb.end(), pixels.begin(), [&](std::uint8_t byte) { return light[byte]; });
+    done = codecs.encode(format->name, image.width, image.height, pixels.data(), bytes, error);
+  } else {
+    done = codecs.encode(format->name, image.width, image.height, image.rgb.data(), bytes, error);
+  }
+  if (!done) throw FileError(path, "cannot be encoded: " + picture_problem(error, path));
+  return bytes;
+}
+
 }  // namespace
 
 Image read_image(const std::filesystem::path& path) {
@@ -33,20 +77,23 @@ Image read_image(const std::filesystem::path& path) {
   return image;
 }
 
-void check_png_path(const std::filesystem::path& path, const SourceGuard& guard) {
-  static constexpr std::array other_formats{".jpg", ".jpeg", ".webp", ".gif", ".bmp",  ".tif",  ".tiff", ".exr",
-                                            ".hdr", ".tga",  ".ppm",  ".jxl", ".avif", ".heic", ".svg",  ".pdf"};
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (std::find(other_formats.begin(), other_formats.end(), extension) != other_formats.end())
-    throw FileError(path, "pictures are written as PNG; name a .png file");
+std::string picture_extensions() {
+  std::string all = ".png";
+  for (const WrittenFormat& format : written_formats) all += fmt::format(", {}", format.extension);
+  return all;
+}
+
+void check_picture_path(const std::filesystem::path& path, const SourceGuard& guard) {
+  static constexpr std::array unsupported{".tif", ".tiff", ".gif",  ".bmp",  ".hdr", ".tga",
+                                          ".ppm", ".jxl",  ".avif", ".heic", ".svg", ".pdf"};
+  if (std::find(unsupported.begin(), unsupported.end(), extension_of(path)) != unsupported.end())
+    throw FileError(path, "pictures are not written in this format; name a file that ends in " + picture_extensions());
   guard.check_file(path);
 }
 
-void write_png(const Image& image, const std::filesystem::path& path, const SourceGuard& guard) {
-  check_png_path(path, guard);
-  write_file_atomically(path, encode_png(image.width, image.height, 3, image.rgb, compression_level), guard);
+void write_picture(const Image& image, const std::filesystem::path& path, const SourceGuard& guard) {
+  check_picture_path(path, guard);
+  write_file_atomically(path, encoded(image, path), guard);
 }
 
 }  // namespace rebake

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "mesh_ops/base/source_guard.h"
@@ -18,10 +19,14 @@ struct Image {
 
 /// Reads a picture file of at most 32768 × 32768 pixels; drops alpha and expands grey to RGB. Throws FileError.
 Image read_image(const std::filesystem::path& path);
-/// Throws FileError if write_png() would reject the path: its extension is that of another picture format, or `guard`
-/// protects it. For a check before expensive work.
-void check_png_path(const std::filesystem::path& path, const SourceGuard& guard);
-/// Writes a PNG file atomically. Throws FileError, also if `guard` protects the path.
-void write_png(const Image& image, const std::filesystem::path& path, const SourceGuard& guard);
+/// Extensions of the formats that write_picture() writes: ".png, .jpg, …".
+std::string picture_extensions();
+/// Throws FileError if write_picture() would reject the path: its extension is that of a format that cannot be written,
+/// or `guard` protects it. For a check before expensive work.
+void check_picture_path(const std::filesystem::path& path, const SourceGuard& guard);
+/// Writes a picture file atomically: PNG and WebP without loss, JPEG with quality 95, or OpenEXR with linear
+/// light (IEC 61966-2-1) in half floats. Unknown extensions mean PNG. Throws FileError, also if `guard` protects the
+/// path.
+void write_picture(const Image& image, const std::filesystem::path& path, const SourceGuard& guard);
 
 }  // namespace rebake

@@ -30,6 +30,10 @@ struct ActionType {
 template <class T>
 const ActionType& action_type();
 
+/// Parses an action from its JSON object, as ActionType::read does; specialised per action. Throws FieldError.
+template <class T>
+T read_action(const nlohmann::json& object, const Scene& scene);
+
 /// All kinds of actions, in help order.
 std::span<const ActionType* const> action_types();
 

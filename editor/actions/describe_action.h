@@ -15,16 +15,25 @@ ActionType action_of(const char* help, Describe) {
   type.help = help;
   type.fields = fields_of<T, Describe>;
   type.read = [](const nlohmann::json& object, const Scene& scene) -> Action {
-    return [action = read_fields<T, Describe>(object, scene)](Session& session) { run(session, action); };
+    return [action = read_action<T>(object, scene)](Session& session) { run(session, action); };
   };
   return type;
 }
 
+template <class T, class Describe>
+T read_described(const nlohmann::json& object, const Scene& scene, Describe) {
+  return read_fields<T, Describe>(object, scene);
+}
+
 }  // namespace rebake::described
 
-/// Defines action_type<Type>(). Arguments: the struct, one sentence of help, and (auto& action, auto& visit) {…} that
-/// visits the fields.
+/// Defines action_type<Type>() and read_action<Type>(). Arguments: the struct, one sentence of help, and (auto& action,
+/// auto& visit) {…} that visits the fields.
 #define REBAKE_DESCRIBE_ACTION(Type, help, ...)                                      \
+  template <>                                                                        \
+  Type read_action<Type>(const nlohmann::json& object, const Scene& scene) {         \
+    return described::read_described<Type>(object, scene, [] __VA_ARGS__);           \
+  }                                                                                  \
   template <>                                                                        \
   const ActionType& action_type<Type>() {                                            \
     static const ActionType type = described::action_of<Type>(help, [] __VA_ARGS__); \

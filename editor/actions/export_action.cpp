@@ -119,7 +119,7 @@ void report_losses(Session& session, const Scene& scene, const ExportAction& act
 }
 
 void export_plain(Session& session, const Scene& scene, const ExportAction& action) {
-  if (action.format != "mobilenerf") throw FieldError("plain", "is available for the MobileNeRF format only");
+  if (action.format.name != FormatName().name) throw FieldError("plain", "is available for the MobileNeRF format only");
   const FuseOptions options = fuse_options(scene, action);
   // Reports unwritable outputs before the long computation.
   check_can_export(action.out, session.document.sources());
@@ -159,8 +159,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
   session.say(fmt::format("exported {} as a plain folder", action.out));
 }
 
-}  // namespace
-
+// Throws FieldError if a field that only plain folders have is set.
 void check_not_plain(const ExportAction& action) {
   const auto refuse = [](bool given, const char* field) {
     if (given) throw FieldError(field, "is available for plain folders only: set plain too");
@@ -173,6 +172,15 @@ void check_not_plain(const ExportAction& action) {
   refuse(action.seconds != 0, "seconds");
   refuse(!action.report.empty(), "report");
 }
+
+// Checks the fields that all exports have. Throws FieldError.
+void check_common(const ExportAction& action) {
+  if (action.out.empty()) throw FieldError("out", "is empty");
+  if (action.page_size && (*action.page_size < 1 || *action.page_size > largest_png_side))
+    throw FieldError("page_size", fmt::format("must lie between 1 and {}", largest_png_side));
+}
+
+}  // namespace
 
 FuseOptions fuse_options(const Scene& scene, const ExportAction& action) {
   FuseOptions options;
@@ -199,19 +207,23 @@ FuseOptions fuse_options(const Scene& scene, const ExportAction& action) {
   return options;
 }
 
+ExportReport write_export(Session& session, const ExportAction& action) {
+  check_common(action);
+  check_not_plain(action);
+  const Format& format = format_named(action.format.name);
+  ExportReport report = format.write(with_only(session.scene(), action.nodes), action.out,
+                                     {action.layout, session.document.sources(), action.page_size}, session.progress);
+  session.wrote_scene(action.out, true);
+  return report;
+}
+
 void run(Session& session, const ExportAction& action) {
-  if (action.out.empty()) throw FieldError("out", "is empty");
-  if (action.page_size && (*action.page_size < 1 || *action.page_size > largest_png_side))
-    throw FieldError("page_size", fmt::format("must lie between 1 and {}", largest_png_side));
+  check_common(action);
   const Scene scene = with_only(session.scene(), action.nodes);
   if (action.plain) return export_plain(session, scene, action);
-  check_not_plain(action);
-  const Format& format = format_named(action.format);
-  const ExportReport report =
-      format.write(scene, action.out, {action.layout, session.document.sources(), action.page_size}, session.progress);
-  session.wrote_scene(action.out, true);
+  const ExportReport report = write_export(session, action);
   for (const std::string& note : report.notes) session.say("note: " + note);
-  if (!report.preserves_scene && format.has_colors) {
+  if (!report.preserves_scene && format_named(action.format.name).has_colors) {
     report_losses(session, scene, action, report);
     report_lost_light(session, scene);
   }
@@ -223,13 +235,8 @@ REBAKE_DESCRIBE_ACTION(
     "Exports the scene in the MobileNeRF format (as scene.json if one folder is not exact) or another format.",
     (auto& action, auto& visit) {
       visit("out", action.out, Need::required, "folder to write");
-      visit("format", action.format, Need::optional, written_formats_help());
       visit("layout", action.layout, Need::optional, "layout of the output; default: as read");
-      visit("page_size", action.page_size, Need::optional,
-            "maximum side of repacked textures in texels, 1 to 16384; larger textures are repacked too; if left "
-            "out: "
-            "4096, or that of the largest source texture");
-      visit("nodes", action.nodes, Need::optional, "only these nodes and their children; default: all");
+      visit("format", action.format, Need::optional, written_formats_help());
       visit("plain", action.plain, Need::optional,
             "write one folder for any scene: if no decoder represents it exactly, or light changes colours, one is "
             "fitted");
@@ -242,9 +249,13 @@ REBAKE_DESCRIBE_ACTION(
       visit("psnr", action.psnr, Need::optional,
             "plain: target PSNR in dB; fitting stops there. Default: 40, and all texels are fitted");
       visit("seconds", action.seconds, Need::optional, "plain: time limit of fitting in seconds; 0: none");
+      visit("report", action.report, Need::optional, "plain: JSON file for the measured errors");
+      visit("page_size", action.page_size, Need::optional,
+            "maximum side of repacked textures in texels, 1 to 16384; larger textures are repacked too. Default: 4096, "
+            "or that of the largest source texture");
       visit("picture_size", action.picture_size, Need::optional,
             "plain: side of the pictures for measuring, in pixels, 16 to 4096");
-      visit("report", action.report, Need::optional, "plain: JSON file for the measured errors");
+      visit("nodes", action.nodes, Need::optional, "only these nodes and their children; default: all");
     })
 
 }  // namespace rebake

@@ -12,13 +12,13 @@
 namespace rebake {
 
 void run(Session& session, const RenderAction& action) {
-  check_png_path(action.out, session.document.sources());
+  check_picture_path(action.out, session.document.sources());
   const Scene scene = with_only(session.scene(), action.nodes);
   const View view = resolve_view(scene, action.camera, action.view, action.width, action.height, action.samples);
   // Objects that are not drawn still cast shadows.
   const Lighting lighting = lit(session.scene(), session.progress);
   const Image picture = session.renderer().render(scene, view, {}, &lighting);
-  write_png(picture, action.out, session.document.sources());
+  write_picture(picture, action.out, session.document.sources());
   session.outputs.push_back(action.out);
   session.say(fmt::format("rendered {}", action.out));
   for (const LightDecision& decision : lighting.summary)
@@ -27,8 +27,9 @@ void run(Session& session, const RenderAction& action) {
 }
 
 REBAKE_DESCRIBE_ACTION(
-    RenderAction, "Renders the scene to a PNG.", (auto& action, auto& visit) {
-      visit("out", action.out, Need::required, "PNG file to write");
+    RenderAction, "Renders the scene to a picture file.", (auto& action, auto& visit) {
+      visit("out", action.out, Need::required,
+            "file to write: .png or .webp without loss, .jpg, or .exr (linear light)");
       visit("view", action.view, Need::optional,
             "name of a stored view; default: the camera, or one that frames the scene");
       visit("camera", action.camera, Need::optional, "the camera");

@@ -6,10 +6,10 @@
 
 namespace rebake {
 
-/// Renders the scene to a PNG.
+/// Renders the scene to a picture file (write_picture).
 struct RenderAction {
   static constexpr const char* op = "render";
-  std::string out;               ///< PNG file to write
+  std::string out;               ///< file to write
   std::string view;              ///< name of a stored view; empty: `camera`
   std::optional<Camera> camera;  ///< nothing: a camera that frames the scene
   int width = 800;               ///< pixels

@@ -1,7 +1,8 @@
 #include "editor/actions/action.h"
 
 // Table of all actions, in help order.
-#define REBAKE_ACTIONS(X) X(RenderAction) X(ExportAction) X(SaveAction) X(SaveProjectAction) X(UndoAction) X(RedoAction)
+#define REBAKE_ACTIONS(X) \
+  X(RenderAction) X(ExportAction) X(SaveAction) X(SaveProjectAction) X(ExportViewsAction) X(UndoAction) X(RedoAction)
 
 namespace rebake {
 

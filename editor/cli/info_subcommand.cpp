@@ -119,16 +119,16 @@ void print(const json& info) {
 void describe_info(SubcommandDescription& command) {
   struct Options {
     std::string folder;
-    std::string axes = "360";
+    FolderOptions reading;
     bool json = false;
   };
   auto options = std::make_shared<Options>();
   command.option("folder", options->folder, "MobileNeRF folder, Rebake scene or project", "FOLDER|SCENE|PROJECT")
       .required();
   command.flag("--json", options->json, "print JSON; memory in bytes");
-  add_axes_option(command, options->axes);
+  options->reading.add_to(command);
   command.does([options] {
-    const nlohmann::json info = scene_info(load_scenes({options->folder}, options->axes, progress_bar()).scene);
+    const nlohmann::json info = scene_info(load_scenes({options->folder}, options->reading, progress_bar()).scene);
     if (options->json)
       fmt::print("{}\n", info.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
     else

@@ -61,7 +61,8 @@ struct Options {
   std::string action;
   std::vector<std::string> paths;
   std::vector<std::string> edits;
-  std::string node, out, axes = "360", way = "linear";
+  std::string node, out, way = "linear";
+  FolderOptions reading;
   int poses = 200, rays = 128, channels = 8;
   double coarseness = TransferModelOptions{}.coarseness;
 };
@@ -152,7 +153,7 @@ void train(const Options& options) {
     throw FieldError("edit",
                      "is missing: give an edit that moves the object, such as '{\"op\": \"bend\", \"degrees\": 60, "
                      "\"axis\": [0, 1, 0]}'");
-  auto [scene, sources] = load_scenes(options.paths, options.axes, progress_bar());
+  auto [scene, sources] = load_scenes(options.paths, options.reading, progress_bar());
   for (const std::string& text : options.edits) {
     const json edit = json::parse(text, nullptr, false);  // invalid JSON is reported below
     for (const char* field : {"mesh", "picture"})
@@ -221,7 +222,8 @@ void keep_model(const Options& options) {
     throw FieldError("paths", options.paths.front() + " is a folder: give the model file first, then the scene");
   const std::string bytes = read_model_bytes(options.paths.front());
   const TransferModel model = transfer_model_of(bytes);
-  auto [scene, sources] = load_scenes({options.paths.begin() + 1, options.paths.end()}, options.axes, progress_bar());
+  auto [scene, sources] =
+      load_scenes({options.paths.begin() + 1, options.paths.end()}, options.reading, progress_bar());
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object) continue;
     for (const BakedBody& body : bodies_of(*placed.node->object))
@@ -263,7 +265,7 @@ void describe_light(SubcommandDescription& command) {
                  "would split into parts",
                  "SHARE [0.03]");
   command.option("-o,--out", options->out, "train: also write the model to this file", "FILE");
-  add_axes_option(command, options->axes);
+  options->reading.add_to(command);
   command.footer(
       "A model improves the shading during drags near the trained poses, compared with rotating the transfer. It is "
       "cached by the object's content; a later model replaces it. A model that is no better "

@@ -10,6 +10,7 @@
 #include "editor/cli/terminal.h"
 #include "editor/document/document.h"
 #include "editor/document/project.h"
+#include "editor/edits/nodes/import.h"
 #include "editor/edits/support.h"
 #include "editor/fields/codec.h"
 #include "mesh_ops/base/error.h"
@@ -52,13 +53,21 @@ Vec3 parse_vec3(const std::string& text, const char* option) {
   return {values[0], values[1], values[2]};
 }
 
-void add_axes_option(SubcommandDescription& command, std::string& axes) {
-  command.option("--axes", axes, "orientation of MobileNeRF folders: 360 or forward (facing)", "360|forward [360]")
-      .one_of(Codec<Axes>::type().choices);
+void FolderOptions::add_to(SubcommandDescription& command) {
+  std::vector<FieldInfo> fields = edit_type<Import>().fields();
+  std::erase_if(fields, [](const FieldInfo& field) { return !describes_folder(field); });
+  fields_.add_to(command, fields, {});
 }
-Axes axes_of(const std::string& word) { return Codec<Axes>::read(word, {}); }
 
-LoadedScene load_scenes(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress) {
+ReadOptions FolderOptions::read() const {
+  nlohmann::json edit = fields_.object();
+  edit["op"] = Import::op;
+  edit["path"] = "";
+  const Edit read = read_edit(edit, {});
+  return {read.as<Import>()->axes, read.as<Import>()->dialect()};
+}
+
+LoadedScene load_scenes(const std::vector<std::string>& folders, const FolderOptions& how, const Progress& progress) {
   LoadedScene opened;
   Scene& scene = opened.scene;
   for (const std::string& folder : folders) {
@@ -69,7 +78,7 @@ LoadedScene load_scenes(const std::vector<std::string>& folders, const std::stri
       add_sources(opened.sources, document.history().edits());
       opened.sources.add_file(folder, "the project that is open");
     } else {
-      read = read_any(folder, axes_of(axes), progress);
+      read = read_any(folder, how.read(), progress);
       protect_input(opened.sources, folder);
     }
     add_sources(opened.sources, read);

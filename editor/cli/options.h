@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "editor/cli/field_options.h"
 #include "editor/cli/subcommand.h"
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/base/source_guard.h"
+#include "mesh_ops/formats/mobilenerf/baked_folder.h"
 #include "mesh_ops/scene/scene.h"
 #include "render/graph/plan.h"
 
@@ -15,17 +17,25 @@ namespace rebake {
 /// Parses "x,y,z". Throws FieldError for the option `option`.
 Vec3 parse_vec3(const std::string& text, const char* option);
 
-/// Adds --axes 360|forward, the orientation of MobileNeRF folders: y up, or forward-facing.
-void add_axes_option(SubcommandDescription& command, std::string& axes);
-/// Converts "360" or "forward". Throws Error for any other word.
-Axes axes_of(const std::string& word);
+/// Options that tell how MobileNeRF folders are read: --axes, and the dialects of other tools. They are fields of the
+/// edit `import`.
+class FolderOptions {
+ public:
+  /// This object must outlive the subcommand's parsing.
+  void add_to(SubcommandDescription& command);
+  /// Throws FieldError.
+  ReadOptions read() const;
+
+ private:
+  FieldOptions fields_;
+};
 
 /// All folders, scenes and projects of a command line in one scene, with unique node names.
 struct LoadedScene {
   Scene scene;
   SourceGuard sources;  ///< files and folders that must not be overwritten
 };
-LoadedScene load_scenes(const std::vector<std::string>& folders, const std::string& axes, const Progress& progress);
+LoadedScene load_scenes(const std::vector<std::string>& folders, const FolderOptions& how, const Progress& progress);
 
 /// Camera and rendering options of subcommands that render, as given: eye, target, up and background as "x,y,z", size
 /// as "WxH", the others as words of RenderOptions. view() and render_options() parse them.

@@ -10,7 +10,11 @@
 #include "editor/cli/options.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
+#include "editor/fields/codec.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/photo_names.h"
+#include "mesh_ops/formats/cameras/photographs.h"
 #include "render/compare.h"
 #include "render/picture.h"
 
@@ -23,8 +27,9 @@ using nlohmann::json;
 struct Rendering {
   std::vector<std::string> folders;
   std::string out;
-  std::string axes = "360";
+  FolderOptions reading;
   ViewOptions view;
+  std::string cameras, camera_format = "auto", world;
   bool plan = false, json = false, audit = false;
   int time = 0;
 };
@@ -98,13 +103,71 @@ json run_audit(const Scene& scene, const View& view, const RenderOptions& how, c
   return {{"largest", difference.largest}, {"allowed", allowed}, {"share_beyond", difference.share_beyond}};
 }
 
+// Throws FieldError for options that rendering of photographs does not have.
+void check_photograph_options(const Rendering& options) {
+  const ViewOptions& view = options.view;
+  for (const auto& [given, name] : {std::pair(!view.camera_file.empty(), "--camera"),
+                                    {!view.eye.empty(), "--eye"},
+                                    {!view.target.empty(), "--target"},
+                                    {!view.up.empty(), "--up"},
+                                    {view.fov.has_value(), "--fov"},
+                                    {view.near_plane.has_value(), "--near"},
+                                    {view.far_plane.has_value(), "--far"},
+                                    {view.size != ViewOptions().size, "--size"},
+                                    {options.plan, "--plan"},
+                                    {options.audit, "--audit"},
+                                    {options.json, "--json"},
+                                    {options.time > 0, "--time"}})
+    if (given) throw FieldError(name, "cannot be combined with --cameras");
+  if (options.out.empty()) throw FieldError("-o", "is missing: name a folder for the pictures");
+}
+
+// Writes a picture for each camera of a file into a folder, named after the photographs.
+void render_photographs(const Rendering& options) {
+  check_photograph_options(options);
+  auto [scene, sources] = load_scenes(options.folders, options.reading, progress_bar());
+  options.view.set_background(scene);
+  std::optional<WorldUp> up;
+  if (!options.world.empty()) up = Codec<WorldUp>::read(json(options.world), scene);
+  std::vector<std::string> notes;
+  const std::string format = options.camera_format == "auto" ? "" : options.camera_format;
+  const std::vector<PhotoCamera> cameras = read_cameras(options.cameras, format, up, notes);
+  const std::vector<Camera> cameras_as_views = views_of(cameras, notes);
+  for (const std::string& note : notes) write_stderr(fmt::format("warning: {}: {}\n", options.cameras, note));
+  for (const std::filesystem::path& file : camera_format_for(options.cameras, format).files(options.cameras))
+    sources.add_file(file, "a camera file of this run");
+  for (const std::filesystem::path& file : capture_files(options.cameras, cameras))
+    sources.add_file(file, "a file of the capture");
+  std::vector<View> views;
+  std::vector<std::filesystem::path> files;
+  const std::vector<std::string> names = photo_names(cameras);
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    views.push_back(
+        resolve_view(scene, cameras_as_views[k], "", cameras[k].width, cameras[k].height, options.view.samples));
+    files.push_back(std::filesystem::path(options.out) / (names[k] + ".png"));
+    check_picture_path(files.back(), sources);
+  }
+  std::filesystem::create_directories(options.out);
+  const Lighting lighting = lit(scene, progress_bar());
+  Renderer renderer;
+  const Progress progress = progress_bar();
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    progress.at("rendering", static_cast<double>(k) / static_cast<double>(views.size()));
+    write_picture(renderer.render(scene, views[k], options.view.render_options(), &lighting), files[k], sources);
+  }
+  print_message(fmt::format("rendered {} pictures into {}", views.size(), options.out));
+}
+
 void render(const Rendering& options) {
+  if (!options.cameras.empty()) return render_photographs(options);
+  if (!options.world.empty()) throw FieldError("--world", "applies to --cameras only");
+  if (options.camera_format != "auto") throw FieldError("--camera-format", "applies to --cameras only");
   if (options.out.empty() && !options.plan && !options.audit && options.time == 0)
-    throw FieldError("-o", "is missing: name a PNG to write, or use --plan, --audit or --time");
-  if (!options.out.empty()) check_png_path(options.out, {});
-  auto [scene, sources] = load_scenes(options.folders, options.axes, progress_bar());
+    throw FieldError("-o", "is missing: name a picture to write, or use --plan, --audit or --time");
+  if (!options.out.empty()) check_picture_path(options.out, {});
+  auto [scene, sources] = load_scenes(options.folders, options.reading, progress_bar());
   options.view.protect_files(sources);
-  if (!options.out.empty()) check_png_path(options.out, sources);
+  if (!options.out.empty()) check_picture_path(options.out, sources);
   options.view.set_background(scene);
   const View view = options.view.view(scene);
   const RenderOptions how = options.view.render_options();
@@ -116,7 +179,7 @@ void render(const Rendering& options) {
     renderer.emplace();
     if (!options.out.empty()) {
       const Image picture = renderer->render(scene, view, how, &lighting);
-      write_png(picture, options.out, sources);
+      write_picture(picture, options.out, sources);
       if (const auto why = blank_reason(scene, view, picture)) write_stderr(fmt::format("note: {}\n", *why));
     }
     if (options.time > 0) {
@@ -143,9 +206,20 @@ void describe_render(SubcommandDescription& command) {
   auto options = std::make_shared<Rendering>();
   command.option("folders", options->folders, "folders and scenes to render together", "FOLDER|SCENE|PROJECT...")
       .required();
-  command.option("-o,--out", options->out, "PNG to write", "OUT.png");
+  command.option("-o,--out", options->out,
+                 "picture to write: .png or .webp without loss, .jpg, or .exr (linear light)", "OUT.png");
   options->view.add_to(command);
-  add_axes_option(command, options->axes);
+  options->reading.add_to(command);
+  command.option("--cameras", options->cameras,
+                 "render every camera of a file (transforms.json, COLMAP, poses_bounds.npy, camera paths) at its own "
+                 "size; -o names a folder",
+                 "FILE|FOLDER");
+  command
+      .option("--camera-format", options->camera_format, "with --cameras: format of the file",
+              fmt::format("{} [auto]", fmt::join(Codec<CameraFormatName>::type().choices, "|")))
+      .one_of(Codec<CameraFormatName>::type().choices);
+  command.option("--world", options->world, "with --cameras: axis that points up in the file", "y_up|z_up [by format]")
+      .one_of(Codec<WorldUp>::type().choices);
   command.flag("--plan", options->plan, "print which passes run or are omitted, and why");
   command.flag("--audit", options->audit,
                "also render with all omitted effects, and fail if the picture differs by more than the bounds "

@@ -18,7 +18,7 @@ void describe_study(SubcommandDescription& command) {
     std::string name, out;
     std::vector<std::string> scenes;
     int frames = 9;
-    std::string axes = "360";
+    FolderOptions reading;
     ViewOptions view;
   };
   auto options = std::make_shared<Options>();
@@ -30,12 +30,12 @@ void describe_study(SubcommandDescription& command) {
   command.option("--scene", options->scenes, "scenes to measure", "FOLDER|SCENE|PROJECT... [the sample ficus]");
   command.option("--frames", options->frames, "timed frames per variant", "N [9]").between(1, 1000);
   options->view.add_to(command);
-  add_axes_option(command, options->axes);
+  options->reading.add_to(command);
   command.does([options] {
     for (const Study& study : study_table) {
       if (options->name != study.name) continue;
       if (options->scenes.empty()) options->scenes.push_back(default_study_scene().string());
-      auto [scene, sources] = load_scenes(options->scenes, options->axes, progress_bar());
+      auto [scene, sources] = load_scenes(options->scenes, options->reading, progress_bar());
       options->view.set_background(scene);
       options->view.protect_files(sources);
       prepare_study_folder(study, options->out, sources);

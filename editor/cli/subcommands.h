@@ -9,6 +9,7 @@ void describe_info(SubcommandDescription& command);
 void describe_render(SubcommandDescription& command);
 void describe_run(SubcommandDescription& command);
 void describe_export(SubcommandDescription& command);
+void describe_repair(SubcommandDescription& command);
 void describe_batch(SubcommandDescription& command);
 void describe_recover(SubcommandDescription& command);
 void describe_compare(SubcommandDescription& command);
@@ -20,9 +21,10 @@ void describe_completion(SubcommandDescription& command);
 inline constexpr Subcommand subcommand_table[] = {
     {"edit", "opens the editor window", describe_edit},
     {"info", "prints the contents of a folder or scene", describe_info},
-    {"render", "renders folders or scenes to a PNG", describe_render},
+    {"render", "renders folders or scenes to a picture file", describe_render},
     {"run", "runs a script of edits and actions (one JSON object per line)", describe_run},
     {"export", "exports a folder or scene in the MobileNeRF format", describe_export},
+    {"repair", "writes a folder that other tools have changed as other programs expect it", describe_repair},
     {"batch", "runs one script on many scenes; each is imported as the node \"scene\" and exported at the end",
      describe_batch},
     {"recover", "recovers the edits of a crashed run from its journal, as a project", describe_recover},

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "editor/edits/nodes/import.h"
-#include "editor/edits/nodes/light.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/scene_files.h"
@@ -75,34 +74,23 @@ void check_links(const SourceLinks& links, const std::vector<fs::path>& sources)
   }
 }
 
-namespace {
-
-// A light with effects "none" reads no picture.
-bool has_picture(const LightEdit& light) {
-  return !light.picture.empty() && light.effects != std::vector<std::string>{"none"};
-}
-
-}  // namespace
-
-std::uint64_t content_hash_at(const fs::path& path) {
-  std::error_code error;
-  return fs::is_directory(scene_root(path), error) ? folder_hash(path) : content_hash(read_file(path));
-}
-
 std::optional<EditSource> source_of(const Edit& edit) {
-  if (const auto* import = edit.as<Import>()) return EditSource{import->path, import->content};
-  if (const auto* light = edit.as<LightEdit>(); light != nullptr && has_picture(*light))
-    return EditSource{light->picture, light->content};
-  return std::nullopt;
+  if (edit.type().source == nullptr) return std::nullopt;
+  const EditSource source = edit.type().source(edit.value());
+  return source.path.empty() ? std::nullopt : std::optional(source);
 }
 
 nlohmann::json* source_field(nlohmann::json& edit) {
   if (!edit.is_object()) return nullptr;
   const std::string op = edit.value("op", "");
-  const bool off = edit.contains("effects") && edit.at("effects") == nlohmann::json::array({"none"});
-  const char* const field = op == Import::op ? "path" : op == LightEdit::op && !off ? "picture" : "";
-  const auto found = edit.find(field);
-  return found == edit.end() || *found == "" ? nullptr : &*found;
+  // A light with the effects "none" reads no picture.
+  if (edit.contains("effects") && edit.at("effects") == nlohmann::json::array({"none"})) return nullptr;
+  for (const EditType* const type : edit_types()) {
+    if (op != type->op || type->source_field == nullptr) continue;
+    const auto found = edit.find(type->source_field);
+    return found == edit.end() || *found == "" ? nullptr : &*found;
+  }
+  return nullptr;
 }
 
 std::string source_problem(const fs::path& source, const std::string& content, const SourceLinks& links) {
@@ -118,30 +106,24 @@ Edit completed(const Edit& edit) {
   if (edit.is<Import>() && edit.as<Import>()->path.empty()) throw FieldError("path", "is empty");
   const std::optional<EditSource> source = source_of(edit);
   if (!source) return edit;
-  const std::string path = absolute_path(source->path).string();
-  const auto content = [&](bool there) {
-    // The edit itself reports a missing source.
-    return source->content.empty() && there ? hash_text(content_hash_at(path)) : source->content;
-  };
+  EditSource whole{absolute_path(source->path), source->content};
   std::error_code error;
-  if (const auto* import = edit.as<Import>()) {
-    Import whole = *import;
-    whole.path = path;
-    whole.content = content(fs::is_directory(scene_root(path), error));
-    return whole;
-  }
-  LightEdit whole = *edit.as<LightEdit>();
-  whole.picture = path;
-  whole.content = content(fs::is_regular_file(path, error));
-  return whole;
+  const fs::path there = scene_root(whole.path);
+  // The edit itself reports a missing source.
+  if (whole.content.empty() && (fs::is_directory(there, error) || fs::is_regular_file(there, error)))
+    whole.content = hash_text(content_hash_at(whole.path));
+  return edit.type().with_source(edit.value(), whole);
 }
 
 void add_sources(SourceGuard& guard, const std::vector<Edit>& edits) {
-  for (const Edit& edit : edits)
-    if (const auto* import = edit.as<Import>())
-      protect_input(guard, import->path);
-    else if (const auto source = source_of(edit))
-      guard.add_file(source->path);
+  for (const Edit& edit : edits) {
+    const auto source = source_of(edit);
+    if (!source) continue;
+    if (edit.type().input_files != nullptr)
+      for (const fs::path& file : edit.type().input_files(edit.value())) guard.add_file(file);
+    else
+      protect_input(guard, source->path);
+  }
 }
 
 void add_sources(SourceGuard& guard, const Scene& scene) {

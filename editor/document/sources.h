@@ -25,15 +25,8 @@ std::filesystem::path resolved_source(const std::filesystem::path& source, const
 /// Throws FieldError, which lists the sources, for a link whose old path is neither a source nor contains one.
 void check_links(const SourceLinks& links, const std::vector<std::filesystem::path>& sources);
 
-/// External input of an edit: an imported folder, or the environment map of a light.
-struct EditSource {
-  std::filesystem::path path;
-  std::string content;  ///< content hash, hexadecimal; may be empty
-};
-/// Nothing for edits that read no source.
+/// The external input of an edit; nothing for edits that read no source.
 std::optional<EditSource> source_of(const Edit& edit);
-/// Hash of the present content: of a file, or of all files of a scene folder. Throws FileError.
-std::uint64_t content_hash_at(const std::filesystem::path& path);
 /// The field of an edit's JSON that contains the path of its source; null if it has none.
 nlohmann::json* source_field(nlohmann::json& edit);
 

@@ -68,6 +68,17 @@ EditType type_of(const char* help, Describe) {
     Describe{}(*static_cast<const T*>(edit), named);
     return std::move(named.nodes);
   };
+  if constexpr (requires { T::source_field; }) {
+    type.source_field = T::source_field;
+    if constexpr (requires(const T& one) { one.input_files(); })
+      type.input_files = [](const void* edit) { return static_cast<const T*>(edit)->input_files(); };
+    type.source = [](const void* edit) { return static_cast<const T*>(edit)->input(); };
+    type.with_source = [](const void* edit, const EditSource& source) {
+      T changed = *static_cast<const T*>(edit);
+      changed.set_input(source);
+      return Edit(std::move(changed));
+    };
+  }
   return type;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -27,6 +28,12 @@ struct Outcome {
 
   Outcome(Scene made) : scene(std::move(made)) {}  // most edits report nothing
   Outcome(Scene made, Report said) : scene(std::move(made)), report(std::move(said)) {}
+};
+
+/// External input of an edit, such as an imported folder.
+struct EditSource {
+  std::filesystem::path path;  ///< empty: none
+  std::string content;         ///< content hash, hexadecimal; may be empty
 };
 
 /// A field that can be adjusted after the edit. Forms of its value: `number`: a whole number of at least 1; `length`:
@@ -64,6 +71,14 @@ struct EditType {
   Outcome (*apply)(const Scene& scene, const void* edit, const Progress& progress);
   /// Nodes in the edit's fields.
   std::vector<NodeId> (*named_nodes)(const void* edit);
+
+  // For edits that read an external input; otherwise null. Structs state them as a static member `source_field` and as
+  // functions input() and set_input().
+  const char* source_field;                ///< the field with its path; the field "content" has its hash
+  EditSource (*source)(const void* edit);  ///< with an empty path if this edit reads none
+  Edit (*with_source)(const void* edit, const EditSource& source);
+  /// Files that the edit reads, by a function input_files(); null for edits whose source stands for all files.
+  std::vector<std::filesystem::path> (*input_files)(const void* edit);
 };
 
 /// The EditType of an edit struct; specialised per edit.

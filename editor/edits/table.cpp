@@ -19,6 +19,7 @@
   X(Lock) \
   X(Unlock) \
   X(StoreView) \
+  X(ImportViews) \
   X(RenameView) \
   X(RemoveView) \
   X(Background) \
@@ -34,6 +35,7 @@
   X(SelectLike) \
   X(SelectFloaters) \
   X(SelectUnneeded) \
+  X(SelectMasks) \
   X(SelectTriangles) \
   X(SelectFolded) \
   X(Grow) \

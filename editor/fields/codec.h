@@ -7,6 +7,7 @@
 
 #include "editor/fields/values.h"
 #include "mesh_ops/features/distill/fuse_method.h"
+#include "mesh_ops/scene/photo_camera.h"
 
 namespace rebake {
 
@@ -63,6 +64,10 @@ REBAKE_CODEC(BrushStroke);
 REBAKE_CODEC(Interval);
 REBAKE_CODEC(NumberRanges);
 REBAKE_CODEC(PixelSize);
+REBAKE_CODEC(RareFlag);
+REBAKE_CODEC(FormatName);
+REBAKE_CODEC(CameraFormatName);
+REBAKE_CODEC(WorldUp);
 REBAKE_CODEC(FuseWidth);
 REBAKE_CODEC(FuseMethod);
 REBAKE_CODEC(std::vector<std::string>);
@@ -70,6 +75,7 @@ REBAKE_CODEC(std::vector<int>);
 REBAKE_CODEC(SelectMode);
 REBAKE_CODEC(CoordinateFrame);
 REBAKE_CODEC(Axes);
+REBAKE_CODEC(AlphaCode);
 REBAKE_CODEC(Layout);
 REBAKE_CODEC(Camera);
 

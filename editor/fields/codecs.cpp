@@ -10,7 +10,9 @@
 #include <numeric>
 
 #include "mesh_ops/base/elementary.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/camera_json.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
@@ -102,6 +104,16 @@ const Words<SelectMode>& select_mode_words() {
 const Words<CoordinateFrame>& frame_words() {
   static const Words<CoordinateFrame> words{
       {"world", CoordinateFrame::world}, {"node", CoordinateFrame::node}, {"bounds", CoordinateFrame::bounds}};
+  return words;
+}
+
+const Words<WorldUp>& world_up_words() {
+  static const Words<WorldUp> words{{"y_up", WorldUp::y}, {"z_up", WorldUp::z}};
+  return words;
+}
+
+const Words<AlphaCode>& alpha_code_words() {
+  static const Words<AlphaCode> words{{"halved", AlphaCode::halved}, {"plain", AlphaCode::plain}};
   return words;
 }
 
@@ -335,8 +347,33 @@ PixelSize Codec<PixelSize>::read(const json& value, const Scene& scene) {
 }
 json Codec<PixelSize>::write(const PixelSize& value) { return json::array({value.width, value.height}); }
 
+FieldType Codec<RareFlag>::type() { return Codec<bool>::type(); }
+RareFlag Codec<RareFlag>::read(const json& value, const Scene& scene) { return {Codec<bool>::read(value, scene)}; }
+json Codec<RareFlag>::write(const RareFlag& value) { return value.set ? json(true) : json(); }
+
+FieldType Codec<FormatName>::type() { return choice_type(written_formats()); }
+FormatName Codec<FormatName>::read(const json& value, const Scene& scene) {
+  return {format_named(Codec<std::string>::read(value, scene)).name};
+}
+json Codec<FormatName>::write(const FormatName& value) { return value.name; }
+
+FieldType Codec<CameraFormatName>::type() {
+  std::vector<std::string> words = camera_format_names();
+  words.insert(words.begin(), "auto");
+  return choice_type(std::move(words));
+}
+CameraFormatName Codec<CameraFormatName>::read(const json& value, const Scene& scene) {
+  if (value == "auto") return {};
+  return {camera_format_named(Codec<std::string>::read(value, scene)).name};
+}
+json Codec<CameraFormatName>::write(const CameraFormatName& value) { return value.name.empty() ? "auto" : value.name; }
+
+FieldType Codec<WorldUp>::type() { return type_of(world_up_words()); }
+WorldUp Codec<WorldUp>::read(const json& value, const Scene&) { return read_word(value, world_up_words()); }
+json Codec<WorldUp>::write(const WorldUp& value) { return write_word(value, world_up_words()); }
+
 FieldType Codec<FuseWidth>::type() {
-  return {FieldKind::other, "auto or a whole number from 4 to 256", "int | str", {}};
+  return {FieldKind::other, "auto or a whole number from 4 to 256", "int | Literal[\"auto\"]", {}};
 }
 FuseWidth Codec<FuseWidth>::read(const json& value, const Scene& scene) {
   if (value == "auto") return {};
@@ -377,6 +414,10 @@ Axes Codec<Axes>::read(const json& value, const Scene&) {
   return read_word(value, axes_words());
 }
 json Codec<Axes>::write(const Axes& value) { return write_word(value, axes_words()); }
+
+FieldType Codec<AlphaCode>::type() { return type_of(alpha_code_words()); }
+AlphaCode Codec<AlphaCode>::read(const json& value, const Scene&) { return read_word(value, alpha_code_words()); }
+json Codec<AlphaCode>::write(const AlphaCode& value) { return write_word(value, alpha_code_words()); }
 
 FieldType Codec<Layout>::type() { return type_of(layout_words()); }
 Layout Codec<Layout>::read(const json& value, const Scene&) { return read_word(value, layout_words()); }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,21 @@ struct NumberRanges {
 /// Size of a picture in pixels, 1 … 16384 each.
 struct PixelSize {
   int width = 800, height = 800;
+};
+
+/// A flag that is only written if it is set, so that files without it can be read by earlier versions.
+struct RareFlag {
+  bool set = false;
+};
+
+/// Identifier of a format that scenes are written in; an entry of formats().
+struct FormatName {
+  std::string name = "mobilenerf";
+};
+
+/// Identifier of a format of camera files; an entry of camera_formats(). Empty: auto.
+struct CameraFormatName {
+  std::string name;
 };
 
 /// Width of a fused decoder's hidden layers; nothing: chosen automatically.

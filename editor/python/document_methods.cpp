@@ -16,7 +16,6 @@
 #include "editor/python/json_python.h"
 #include "editor/python/py_document.h"
 #include "editor/python/stub.h"
-#include "mesh_ops/formats/formats.h"
 #include "render/picture.h"
 
 using nlohmann::json;
@@ -81,31 +80,16 @@ py::object edit_with(PyDocument& document, const std::string& op, const py::dict
   return edit.type().selects ? py::object(selections_of(document)) : py::none();
 }
 
-std::vector<std::string> export_document(PyDocument& document, const std::filesystem::path& path,
-                                         const py::object& layout, const std::string& format, bool plain,
-                                         const py::object& width, const py::object& way, const std::string& keep,
-                                         std::optional<double> psnr, double seconds,
-                                         const std::filesystem::path& report) {
-  ExportAction action;
-  action.out = path.string();
-  action.format = format;
-  if (!layout.is_none()) action.layout = Codec<Layout>::read(to_json(layout), {});
-  action.plain = plain;
-  action.width = Codec<FuseWidth>::read(to_json(width), {});
-  if (!way.is_none()) action.way = Codec<FuseMethod>::read(to_json(way), {});
-  action.keep = keep;
-  action.psnr = psnr;
-  action.seconds = seconds;
-  action.report = report.string();
+std::vector<std::string> export_with(PyDocument& document, const py::dict& fields) {
+  const json line = to_json(fields);
   std::vector<std::string> notes;
   document.work([&](Session& session) {
-    if (!plain) {
-      check_not_plain(action);
-      const ExportOptions options{action.layout, session.document.sources()};
-      notes = format_named(format).write(session.scene(), path, options, session.progress).notes;
+    const auto action = read_action<ExportAction>(line, session.scene());
+    if (!action.plain) {
+      notes = write_export(session, action).notes;
       return;
     }
-    const auto say = std::exchange(session.say, [&notes](const std::string& line) { notes.push_back(line); });
+    const auto say = std::exchange(session.say, [&notes](const std::string& text) { notes.push_back(text); });
     try {
       run(session, action);
     } catch (...) {
@@ -158,15 +142,13 @@ void add_history_methods(py::class_<PyDocument>& type) {
 // Methods whose names, types and defaults are visible to help() and inspect.
 void add_edit_methods(py::class_<PyDocument>& type) {
   type.def("_edit", &edit_with);
+  type.def("_export", &export_with);
   py::dict scope;
   scope["__builtins__"] = py::module_::import("builtins");
   scope["__name__"] = "rebake";
   py::exec(python_methods(), scope);
-  const py::object edits = scope["Edits"];
-  for (const EditType* edit : edit_types()) {
-    const std::string name = python_name(edit->op);
-    type.attr(name.c_str()) = edits.attr(name.c_str());
-  }
+  const py::object methods = scope["Methods"];
+  for (const std::string& name : python_method_names()) type.attr(name.c_str()) = methods.attr(name.c_str());
 }
 
 }  // namespace
@@ -191,11 +173,6 @@ void add_document_methods(py::class_<PyDocument>& type) {
           if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
       },
       py::arg("path"), "Writes a project (.rebake), or a scene folder with all nodes.");
-  type.def("export", &export_document, py::arg("path"), py::arg("layout") = py::none(),
-           py::arg("format") = "mobilenerf", py::arg("plain") = false, py::arg("width") = "auto",
-           py::arg("way") = py::none(), py::arg("keep") = "auto", py::arg("psnr") = py::none(), py::arg("seconds") = 0,
-           py::arg("report") = "",
-           "Exports in the MobileNeRF format or another; returns notes about conversions and losses.");
   type.def("render", &render_picture, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
            py::arg("camera") = py::none(), py::arg("view") = "", "Renders a picture, uint8, height × width × 3.");
   add_edit_methods(type);

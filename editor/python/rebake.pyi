@@ -88,13 +88,6 @@ class Document:
     def discard_journal(self) -> None: ...
     def save(self, path: str | PathLike[str]) -> None:
         """Writes a project (.rebake), or a scene folder with all nodes."""
-    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None,
-               format: Literal["mobilenerf", "rebake"] = "mobilenerf", plain: bool = False,
-               width: int | Literal["auto"] = "auto",
-               way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto",
-               psnr: float | None = None, seconds: float = 0, report: str | PathLike[str] = "") -> list[str]:
-        """Exports in the MobileNeRF format or another; returns notes about conversions and losses, and with plain (one
-        folder for any scene) the measured errors."""
     def render(self, width: int = 800, height: int = 800, samples: int = 4, camera: Camera | None = None,
                view: str = "") -> NDArray[np.uint8]:
         """Renders a picture, height × width × 3; without camera and view, the camera frames the scene."""
@@ -113,12 +106,34 @@ class Document:
         """The texels by tile row and column, 256 × 256 × 8 per tile (feat0 RGBA, feat1 RGBA); read-only, unpacked by each call."""
     def texture(self, node: Node, texture_set: int = 0) -> NDArray[np.uint8]:
         """All texels as one array, height × width × 8; a copy."""
-    def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", ground: bool = False, content: str = "") -> None:
+    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None, format: Literal["mobilenerf", "rebake"] = "mobilenerf", plain: bool = False, width: int | Literal["auto"] | None = None, way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto", psnr: float | None = None, seconds: float = 0.0, report: str | PathLike[str] = "", page_size: int | None = None, picture_size: int = 800, nodes: Sequence[Node] | None = None) -> list[str]:
+        """Exports the scene; returns notes about conversions and losses, and with plain the measured errors.
+
+        path: folder to write
+        layout: layout of the output; default: as read
+        format: mobilenerf: for the published viewers; rebake: keeps every node
+        plain: write one folder for any scene: if no decoder represents it exactly, or light changes colours, one is fitted
+        width: plain: maximum width of the decoder's hidden layers, 4 to 256, or auto
+        way: plain: keep one decoder, fine-tune it, train a new one, or put all side by side; default: the best
+        keep: plain: the node that stays bit for bit, none, or auto (the largest, if that is best overall)
+        psnr: plain: target PSNR in dB; fitting stops there. Default: 40, and all texels are fitted
+        seconds: plain: time limit of fitting in seconds; 0: none
+        report: plain: JSON file for the measured errors
+        page_size: maximum side of repacked textures in texels, 1 to 16384; larger textures are repacked too. Default: 4096, or that of the largest source texture
+        picture_size: plain: side of the pictures for measuring, in pixels, 16 to 4096
+        nodes: only these nodes and their children; default: all
+        """
+    def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", half_direction: bool | None = None, direction_first: bool | None = None, bgr: bool | None = None, alpha: Literal["halved", "plain"] | None = None, no_holes: bool | None = None, ground: bool = False, content: str = "") -> None:
         """Reads a MobileNeRF folder or a Rebake scene into the scene.
 
         path: folder to read
         as_: name of the new node; empty: the folder's name
         axes: orientation of a MobileNeRF folder; Rebake scenes contain theirs
+        half_direction: the folder's decoder takes (d + 1) / 2 instead of the view direction d
+        direction_first: the folder's decoder takes the view direction before the features
+        bgr: the folder's images have the channels blue, green, red, alpha
+        alpha: code of the alpha channels; default: halved, but plain in unsplit folders
+        no_holes: texels whose first feature is 0 are opaque; it becomes 1/255
         ground: move the scene's ground to the lowest point of the scene
         content: expected hash of the folder's files, from projects and journals; other contents are refused
         """
@@ -179,6 +194,16 @@ class Document:
 
         name: name of the view
         camera: the camera; absent fields have defaults, and near and far planes are fitted to the visible objects
+        """
+    def import_views(self, *, path: str, format: Literal["auto", "transforms", "colmap", "poses_bounds", "nerfstudio_path", "ngp_path"] = "auto", prefix: str = "", world: Literal["y_up", "z_up"] | None = None, scale: float = 1.0, content: str = "") -> None:
+        """Stores the cameras of photographs as named views.
+
+        path: camera file or folder: transforms.json (NeRF, nerfstudio, instant-ngp), a COLMAP model, poses_bounds.npy, or a camera path of nerfstudio or instant-ngp
+        format: format of the file; auto: recognised
+        prefix: start of the views' names; the photographs' names follow
+        world: axis that points up in the file; default: z_up, but y_up for COLMAP and poses_bounds.npy
+        scale: factor of the cameras' positions
+        content: expected hash of the camera files, from projects and journals; other contents are refused
         """
     def rename_view(self, *, name: str, to: str) -> None:
         """Renames a stored view.
@@ -323,6 +348,22 @@ class Document:
         distance: distance of the eyes, in half diagonals of the object's box
         unseen_from: names of stored views: not visible from any of their eyes
         mode: how to combine the result with the present selection
+        """
+    def select_masks(self, *, path: str, format: Literal["auto", "transforms", "colmap", "poses_bounds", "nerfstudio_path", "ngp_path"] = "auto", masks: str = "", world: Literal["y_up", "z_up"] | None = None, scale: float = 1.0, node: Node | None = None, labels: Sequence[int] | None = None, threshold: float = 0.5, store: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", content: str = "", masks_content: str = "") -> dict[str, NDArray[np.bool_]]:
+        """Selects triangles that are inside masks of photographs: each visible point votes in each photograph.
+
+        path: camera file or folder, as for import_views
+        format: format of the camera file; auto: recognised
+        masks: folder of masks named like the photographs, or a COCO file with run lengths, relative to the folder of the capture; default: as the camera file says, else masks
+        world: axis that points up in the camera file, as for import_views
+        scale: factor of the cameras' positions
+        node: only this node and its children; default: all visible, unlocked objects
+        labels: values of pixels, or COCO categories, that are inside, 1 to 255; default: 128 to 255, or all categories
+        threshold: share of the votes that a triangle needs, 0 to 1
+        store: with labels: stores the triangles of each as the selection "NAME LABEL"
+        mode: how to combine the result with the present selection
+        content: expected hash of the camera files, from projects and journals
+        masks_content: expected hash of the masks, from projects and journals
         """
     def select_triangles(self, *, node: Node, triangles: Sequence[int | Sequence[int]], mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles of an object by number, over its texture sets in order.

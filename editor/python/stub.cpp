@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "editor/actions/export_action.h"
 #include "editor/edits/edit.h"
 #include "editor/fields/field_info.h"
-#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
@@ -22,7 +22,7 @@ std::string python_value(const nlohmann::json& value) {
   return value.dump();
 }
 
-// Parameters of one edit in Python's order (required ones first), and a help line per field.
+// Parameters of one method in Python's order (required ones first), and a help line per field.
 struct Signature {
   std::vector<std::string> required, optional, lines;
   explicit Signature(const std::vector<FieldInfo>& fields) {
@@ -132,13 +132,6 @@ class Document:
     def discard_journal(self) -> None: ...
     def save(self, path: str | PathLike[str]) -> None:
         """Writes a project (.rebake), or a scene folder with all nodes."""
-    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None,
-               format: Literal[FORMATS] = "mobilenerf", plain: bool = False,
-               width: int | Literal["auto"] = "auto",
-               way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto",
-               psnr: float | None = None, seconds: float = 0, report: str | PathLike[str] = "") -> list[str]:
-        """Exports in the MobileNeRF format or another; returns notes about conversions and losses, and with plain (one
-        folder for any scene) the measured errors."""
     def render(self, width: int = 800, height: int = 800, samples: int = 4, camera: Camera | None = None,
                view: str = "") -> NDArray[np.uint8]:
         """Renders a picture, height × width × 3; without camera and view, the camera frames the scene."""
@@ -159,40 +152,77 @@ class Document:
         """All texels as one array, height × width × 8; a copy."""
 )";
 
-// Source of a typed method for an edit, indented as in a class. `last`: a further parameter, such as **unknown.
-std::string method(const EditType& edit, const char* last = nullptr) {
-  const Signature signature(edit.fields());
+// A method with a parameter per field of an edit or action.
+struct Method {
+  std::string name, help, result;
+  std::vector<FieldInfo> fields;
+  bool positional;  ///< whether arguments may be given without their names
+};
+
+std::string parameter_name(const Method& method, const std::string& field) {
+  return method.name == "export" && field == "out" ? "path" : python_name(field);
+}
+
+// Source of a typed method, indented as in a class. `last`: a further parameter, such as **unknown.
+std::string python_source(const Method& method, const char* last = nullptr) {
+  std::vector<FieldInfo> fields = method.fields;
+  for (FieldInfo& field : fields) field.name = parameter_name(method, field.name);
+  const Signature signature(fields);
   std::vector<std::string> parameters = signature.required;
   parameters.insert(parameters.end(), signature.optional.begin(), signature.optional.end());
-  std::string list = parameters.empty() ? "" : fmt::format(", *, {}", fmt::join(parameters, ", "));
+  std::string list =
+      parameters.empty() ? "" : fmt::format("{}{}", method.positional ? ", " : ", *, ", fmt::join(parameters, ", "));
   if (last != nullptr) list += fmt::format(", {}", last);
-  return fmt::format("    def {}(self{}) -> {}:\n        \"\"\"{}\n\n        {}\n        \"\"\"\n",
-                     python_name(edit.op), list, edit.selects ? "dict[str, NDArray[np.bool_]]" : "None", edit.help,
-                     fmt::join(signature.lines, "\n        "));
+  return fmt::format("    def {}(self{}) -> {}:\n        \"\"\"{}\n\n        {}\n        \"\"\"\n", method.name, list,
+                     method.result, method.help, fmt::join(signature.lines, "\n        "));
+}
+
+// Expression of a dictionary with all fields.
+std::string arguments_of(const Method& method) {
+  std::string text;
+  for (const FieldInfo& field : method.fields)
+    text += fmt::format("\"{}\": {}, ", field.name, parameter_name(method, field.name));
+  return text;
+}
+
+Method method_of(const EditType& edit) {
+  return {python_name(edit.op), edit.help, edit.selects ? "dict[str, NDArray[np.bool_]]" : "None", edit.fields(),
+          false};
+}
+
+Method export_method() {
+  Method method{"export",
+                "Exports the scene; returns notes about conversions and losses, and with plain the measured errors.",
+                "list[str]", action_type<ExportAction>().fields(), true};
+  for (FieldInfo& field : method.fields)
+    if (field.name == "out" || field.name == "report") field.type.python = "str | PathLike[str]";
+  return method;
 }
 
 }  // namespace
 
 std::string python_stub() {
-  std::string out = head;
-  // The formats of the table, so that the text needs no change for a new one.
-  const std::string_view place = "FORMATS";
-  out.replace(out.find(place), place.size(), fmt::format("\"{}\"", fmt::join(written_formats(), "\", \"")));
-  for (const EditType* type : edit_types()) out += method(*type);
+  std::string out = head + python_source(export_method());
+  for (const EditType* type : edit_types()) out += python_source(method_of(*type));
   return out;
 }
 
 std::string python_methods() {
-  std::string out = "from __future__ import annotations\nclass Edits:\n";
+  std::string out = "from __future__ import annotations\nclass Methods:\n";
   for (const EditType* type : edit_types()) {
-    std::string fields;
-    for (const FieldInfo& field : type->fields())
-      fields += fmt::format("\"{}\": {}, ", field.name, python_name(field.name));
+    const Method method = method_of(*type);
     // Unknown fields are passed on, so that the error can suggest a similar name.
-    out += method(*type, "**unknown") +
-           fmt::format("        return self._edit(\"{}\", {{{}**unknown}})\n", type->op, fields);
+    out += python_source(method, "**unknown") +
+           fmt::format("        return self._edit(\"{}\", {{{}**unknown}})\n", type->op, arguments_of(method));
   }
-  return out;
+  const Method method = export_method();
+  return out + python_source(method) + fmt::format("        return self._export({{{}}})\n", arguments_of(method));
+}
+
+std::vector<std::string> python_method_names() {
+  std::vector<std::string> names{"export"};
+  for (const EditType* type : edit_types()) names.push_back(python_name(type->op));
+  return names;
 }
 
 }  // namespace rebake

@@ -137,6 +137,7 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
         Group group{placed.node->name, {}};
         group.object.axes = object.axes;
         group.object.layout = layout.value_or(object.layout);
+        group.object.dialect = object.dialect;
         group.object.decoder = folded_into(object.axes);
         group.object.origin = object.origin;
         group.object.other_members = object.other_members;
@@ -145,6 +146,7 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
       } else {
         found->object.other_members.insert(object.other_members.begin(), object.other_members.end());
         if (found->object.origin != object.origin) found->object.origin = nullptr;
+        if (found->object.dialect != object.dialect) found->object.dialect = {};
         if (reordered != nullptr && found != &groups.back()) *reordered = true;
       }
       for (TextureSet& set : sets) {
@@ -198,6 +200,8 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     if (object.axes == Axes::forward)
       report.notes.emplace_back(
           "the format does not record that this is a forward-facing scene: open it with --axes forward");
+    if (object.dialect != Dialect{})
+      report.notes.emplace_back("the folder is in the dialect in which it was read; open it with the same options");
     write_baked_folder(out, {}, object, object.layout, report.notes, progress, false, options.page_side);
   } else {
     report.notes.push_back(
@@ -210,7 +214,7 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     for (const Node& node : nodes) {
       taken.push_back(folder_name(node.name, taken));
       folder_of[node.object.get()] = taken.back();
-      write_baked_folder(out, taken.back(), *node.object, node.object->layout, report.notes, progress, false,
+      write_baked_folder(out, taken.back(), published(*node.object), node.object->layout, report.notes, progress, false,
                          options.page_side);
       merged = with_added(merged, node, NodeId::none, merged.roots.size());
     }

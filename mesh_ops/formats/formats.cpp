@@ -7,7 +7,6 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/mobilenerf/baked_files.h"
-#include "mesh_ops/formats/mobilenerf/baked_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder_files.h"
 #include "mesh_ops/formats/scene_files.h"
@@ -18,14 +17,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Scene read_mobilenerf(const fs::path& folder, Axes axes, const Progress& progress) {
+Scene read_mobilenerf(const fs::path& folder, const ReadOptions& options, const Progress& progress) {
   Node node;
   node.name = folder_title(folder);
-  node.object = read_baked_folder(folder, axes, progress);
+  node.object = read_baked_folder(folder, options, progress);
   return with_added({}, node, NodeId::none, 0);
 }
 
-Scene read_rebake(const fs::path& folder, Axes /*stated in scene.json*/, const Progress& progress) {
+Scene read_rebake(const fs::path& folder, const ReadOptions& /*stated in scene.json*/, const Progress& progress) {
   return read_scene_folder(folder, progress);
 }
 
@@ -90,10 +89,10 @@ const Format& format_named(const std::string& name) {
   throw FieldError("format", fmt::format("\"{}\" is not known (known: {})", name, fmt::join(written_formats(), ", ")));
 }
 
-Scene read_any(const fs::path& named, Axes axes, const Progress& progress) {
+Scene read_any(const fs::path& named, const ReadOptions& options, const Progress& progress) {
   const fs::path path = scene_root(named);
   if (!fs::exists(path)) throw FileError(path, "does not exist");
-  if (const Format* const format = format_at(path)) return format->read(path, axes, progress);
+  if (const Format* const format = format_at(path)) return format->read(path, options, progress);
   std::vector<std::string> folders, files;
   for (const Format& format : formats())
     if (format.read != nullptr)

@@ -8,6 +8,7 @@
 
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/mobilenerf/baked_folder.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
@@ -24,7 +25,8 @@ struct Format {
 
   /// Whether read() accepts this path; null for formats that are only written.
   bool (*recognises)(const std::filesystem::path& path);
-  Scene (*read)(const std::filesystem::path& path, Axes axes, const Progress& progress);
+  /// `options` apply to formats that do not state them.
+  Scene (*read)(const std::filesystem::path& path, const ReadOptions& options, const Progress& progress);
   /// Files that read() reads, relative to the folder; for a single file, those beside it that it refers to. Null for
   /// formats that are only written.
   std::vector<std::filesystem::path> (*files)(const std::filesystem::path& path);
@@ -56,9 +58,9 @@ const char* written_formats_help();
 /// Display name of a scene: the last component of scene_root().
 std::string folder_title(const std::filesystem::path& path);
 
-/// Reads a scene of any known format. A MobileNeRF folder becomes one node with the name of the folder. `axes` applies
-/// to formats that do not state theirs. Throws FileError.
-Scene read_any(const std::filesystem::path& path, Axes axes, const Progress& progress = {});
+/// Reads a scene of any known format. A MobileNeRF folder becomes one node with the name of the folder. `options`
+/// apply to formats that do not state them. Throws FileError.
+Scene read_any(const std::filesystem::path& path, const ReadOptions& options, const Progress& progress = {});
 
 /// Assumptions made when the scene's folders were read (Origin::assumptions), as sentences without duplicates.
 std::vector<std::string> assumptions_of(const Scene& scene);

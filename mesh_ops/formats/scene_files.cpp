@@ -8,6 +8,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/formats.h"
 
 namespace rebake {
@@ -52,6 +53,15 @@ std::uint64_t folder_hash(const fs::path& path) {
   for (const fs::path& file : scene_files(folder))
     all += fmt::format("{} {:016x}\n", file.generic_string(), content_hash(read_file(folder / file)));
   return content_hash(all);
+}
+
+std::uint64_t content_hash_at(const fs::path& path) {
+  const fs::path root = scene_root(path);
+  std::error_code error;
+  const bool is_folder = fs::is_directory(root, error);
+  if (is_folder && format_at(root) != nullptr) return folder_hash(path);
+  if (camera_format_at(path) != nullptr) return camera_hash(path);
+  return is_folder ? folder_hash(path) : content_hash(read_file(path));
 }
 
 void refuse_foreign_content(const fs::path& folder) {

@@ -94,7 +94,7 @@ class RayTriangles::Impl {
       const std::size_t end = first + set.soup.triangle_count();
       std::vector<std::uint32_t>& numbers = numbers_.emplace_back();
       counts_.push_back(set.soup.triangle_count());
-      if (some_) {
+      if (only != nullptr) {
         for (; next < only->size() && (*only)[next] < end; ++next)
           numbers.push_back((*only)[next] - static_cast<std::uint32_t>(first));
         counts_.back() = numbers.size();

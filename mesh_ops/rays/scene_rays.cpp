@@ -93,7 +93,7 @@ std::optional<SceneRays::Hit> SceneRays::nearest(const Vec3& origin, const Vec3&
     if (!hit || hit->t > far) return;
     if (nearest && hit->t == nearest->t && k < nearest->instance) return;
     far = hit->t;
-    nearest = Hit{hit->t, k, hit->triangle};
+    nearest = Hit{*hit, k};
   };
   if (near >= 0) {
     any_near(origin, direction, [&](std::uint32_t k) {
@@ -121,7 +121,7 @@ void SceneRays::nearest(Bundle& rays, double near) const {
     }
     placed_[k].tree->nearest(local, near);
     for (std::size_t ray = 0; ray < 8; ++ray)
-      if (local.hit[ray]) rays.hits[ray] = Hit{local.far[ray], k, local.triangle[ray]};
+      if (local.hit[ray]) rays.hits[ray] = Hit{{local.far[ray], local.triangle[ray]}, k};
   }
   rays.far = local.far;
 }

@@ -25,10 +25,8 @@ class SceneRays {
   };
   explicit SceneRays(std::vector<Instance> instances);
 
-  struct Hit {
-    double t;                ///< the hit is at origin + t · direction
-    std::size_t instance;    ///< index of the instance
-    std::uint32_t triangle;  ///< in the object's numbering
+  struct Hit : RayTree::Hit {
+    std::size_t instance;  ///< index of the instance
   };
   /// Nearest opaque triangle with t in [near, far]; of several at the same t, that of the last instance, as in
   /// rendering.

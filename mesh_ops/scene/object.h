@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,19 @@ enum class Layout {
   unsplit   ///< shape.obj: one texture set
 };
 
+/// Differences of a MobileNeRF folder from the published format that its files do not reveal. Objects in memory have
+/// the published form; reading converts to it, and exports convert back.
+struct Dialect {
+  bool half_direction = false;       ///< the decoder takes (d + 1) / 2 instead of the direction d
+  bool direction_first = false;      ///< the decoder takes the direction before the features
+  bool bgr = false;                  ///< the images' channels are blue, green, red, alpha
+  std::optional<AlphaCode> alpha{};  ///< code of the alpha channels; nothing: that of the layout
+  /// Texels whose red byte in feat0 is 0 are opaque. Reading makes it 1, which changes their first feature by 1/255;
+  /// exports of edited textures keep the 1.
+  bool no_holes = false;
+  bool operator==(const Dialect&) const = default;
+};
+
 /// A triangle soup and the feature texture that its UVs refer to.
 struct TextureSet {
   Soup soup;
@@ -28,7 +42,7 @@ struct TextureSet {
 
 /// A file that an object was read from, so that an export can copy it unchanged.
 struct SourceFile {
-  std::string name;
+  std::string name;        ///< empty: it needed repair, so exports write it instead of copying
   std::uint64_t size = 0;  ///< bytes
   std::uint64_t hash = 0;  ///< XXH64 of the bytes
   bool operator==(const SourceFile&) const = default;
@@ -48,6 +62,7 @@ struct Origin {
   };
   std::filesystem::path folder;
   Layout layout = Layout::split;
+  Dialect dialect;  ///< of the files
   std::vector<Set> sets;
   SourceFile mlp;
   int obj_num = 0;  ///< value in mlp.json; 0 if absent
@@ -72,6 +87,7 @@ struct BakedObject {
   std::shared_ptr<const Decoder> decoder;
   Axes axes = Axes::y_up;
   Layout layout = Layout::split;
+  Dialect dialect;                       ///< in which exports write the object
   std::shared_ptr<const Origin> origin;  ///< null for objects that were not read from a folder
   /// Members of mlp.json that the format does not define, preserved by exports: key → JSON text.
   std::map<std::string, std::string> other_members = {};

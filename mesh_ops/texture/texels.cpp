@@ -146,24 +146,22 @@ bool FeatureTexture::opaque_at(double u, double v) const {
 }
 
 FeatureTexture::Change::Change(const FeatureTexture& from)
-    : texture_(std::make_shared<FeatureTexture>(from)), awaits_first_scene_(from.tiles_.size()) {}
+    : texture_(std::make_shared<FeatureTexture>(from)), copies_(from.tiles_.size()) {}
 
 Texel& FeatureTexture::Change::at(int x, int y) {
   const std::size_t tile = texture_->tile_number(x, y);
-  if (awaits_first_scene_[tile].empty()) awaits_first_scene_[tile] = *texture_->tiles_[tile]->texels();
-  return awaits_first_scene_[tile][static_cast<std::size_t>(y % TexelTile::size) * TexelTile::size +
-                                   static_cast<std::size_t>(x % TexelTile::size)];
+  if (copies_[tile].empty()) copies_[tile] = *texture_->tiles_[tile]->texels();
+  return copies_[tile][static_cast<std::size_t>(y % TexelTile::size) * TexelTile::size +
+                       static_cast<std::size_t>(x % TexelTile::size)];
 }
 
 bool FeatureTexture::Change::touched() const {
-  return std::any_of(awaits_first_scene_.begin(), awaits_first_scene_.end(),
-                     [](const auto& texels) { return !texels.empty(); });
+  return std::any_of(copies_.begin(), copies_.end(), [](const auto& texels) { return !texels.empty(); });
 }
 
 std::shared_ptr<const FeatureTexture> FeatureTexture::Change::finish() {
-  for (std::size_t k = 0; k < awaits_first_scene_.size(); ++k)
-    if (!awaits_first_scene_[k].empty())
-      texture_->tiles_[k] = std::make_shared<const TexelTile>(std::move(awaits_first_scene_[k]), false);
+  for (std::size_t k = 0; k < copies_.size(); ++k)
+    if (!copies_[k].empty()) texture_->tiles_[k] = std::make_shared<const TexelTile>(std::move(copies_[k]), false);
   return std::move(texture_);
 }
 

@@ -110,7 +110,7 @@ class FeatureTexture {
 
    private:
     std::shared_ptr<FeatureTexture> texture_;
-    std::vector<TexelTile::Texels> awaits_first_scene_;  ///< per tile: its copy, or empty
+    std::vector<TexelTile::Texels> copies_;  ///< per tile: its copy, or empty
   };
 
   std::uint64_t opaque_count() const;

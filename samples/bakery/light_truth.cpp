@@ -339,7 +339,7 @@ void measure(Renderer& renderer, const Case& c, const Model& light, const std::f
                                       {&drawn, "drawn"},
                                       {&by_known, "known"},
                                       {&by_estimate, "estimated"}})
-      write_png(*image, out / fmt::format("{}-{}-{}.png", number, k, what), {});
+      write_picture(*image, out / fmt::format("{}-{}-{}.png", number, k, what), {});
   }
   fmt::print("| {} | {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.0f} / {:.0f} |\n", c.name,
              sums.changed, sums.rms(sums.change), sums.rms(sums.ruled) / sums.rms(sums.change),

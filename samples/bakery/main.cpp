@@ -50,8 +50,8 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
     sum += psnr;
     least = std::min(least, psnr);
     if (!pictures.empty() && k % 7 == 0) {
-      write_png(truth, pictures / fmt::format("{}-{}-truth.png", model.name, k), {});
-      write_png(drawn, pictures / fmt::format("{}-{}-baked.png", model.name, k), {});
+      write_picture(truth, pictures / fmt::format("{}-{}-truth.png", model.name, k), {});
+      write_picture(drawn, pictures / fmt::format("{}-{}-baked.png", model.name, k), {});
     }
   }
   fmt::print(

@@ -1,12 +1,18 @@
 #include "tests/fuzz/targets.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/camera_json.h"
+#include "mesh_ops/formats/cameras/coco_masks.h"
 #include "mesh_ops/formats/mobilenerf/baked_positions_file.h"
 #include "mesh_ops/formats/mobilenerf/mlp_json.h"
 #include "mesh_ops/formats/mobilenerf/obj.h"
@@ -78,6 +84,60 @@ void read_json_bytes(std::string_view bytes) {
   }
 }
 
+namespace {
+
+// A folder for readers of files, removed at exit.
+class Workplace {
+ public:
+  Workplace() : path_(std::filesystem::temp_directory_path() / fmt::format("rebake-fuzz-{}", ::getpid())) {
+    for (const char* name : {"text", "binary"}) std::filesystem::create_directories(path_ / name);
+  }
+  ~Workplace() { std::filesystem::remove_all(path_); }
+  std::filesystem::path with(const std::string& name, std::string_view bytes) const {
+    std::ofstream(path_ / name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Cameras that were read have views; those that are written are read back.
+void use(const CameraFormat& format, const std::filesystem::path& path) {
+  try {
+    std::vector<std::string> notes;
+    const std::vector<PhotoCamera> cameras = format.read(path, notes);
+    views_of(cameras, notes);
+    if (format.write != nullptr) format.write(cameras);
+  } catch (const Error&) {
+  }
+}
+
+}  // namespace
+
+void read_camera_bytes(std::string_view bytes) {
+  static const Workplace place;
+  for (const char* format : {"transforms", "nerfstudio_path", "ngp_path"})
+    use(camera_format_named(format), place.with("a.json", bytes));
+  use(camera_format_named("poses_bounds"), place.with("a.npy", bytes));
+  try {
+    PhotoCamera camera;
+    camera.name = "a.png";
+    camera.width = camera.height = 64;
+    const CocoMasks masks(place.with("coco.json", bytes), {camera});
+    if (masks.has(0)) masks.mask(0);
+  } catch (const Error&) {
+  }
+  // The first byte states the length of COLMAP's cameras; its images follow.
+  if (bytes.empty()) return;
+  const std::size_t length = std::min<std::size_t>(static_cast<unsigned char>(bytes[0]), bytes.size() - 1);
+  for (const auto& [folder, extension] : {std::pair("text", ".txt"), {"binary", ".bin"}}) {
+    place.with(fmt::format("{}/cameras{}", folder, extension), bytes.substr(1, length));
+    const auto images = place.with(fmt::format("{}/images{}", folder, extension), bytes.substr(1 + length));
+    use(camera_format_named("colmap"), images.parent_path());
+  }
+}
+
 void read_script_bytes(std::string_view bytes) {
   Scene scene = small_scene();
   std::size_t begin = 0;
@@ -86,8 +146,8 @@ void read_script_bytes(std::string_view bytes) {
     try {
       const auto line = read_line(bytes.substr(begin, end - begin));
       const ScriptCommand command = read_command(with_variables(line, {{"name", "a"}}), scene);
-      // No access to files: imports and actions are parsed, but not executed.
-      if (const Edit* edit = std::get_if<Edit>(&command); edit != nullptr && !edit->is<Import>())
+      // No access to files: actions and edits that read files are parsed, but not executed.
+      if (const Edit* edit = std::get_if<Edit>(&command); edit != nullptr && edit->type().source_field == nullptr)
         scene = rebake::apply(scene, *edit).scene;
     } catch (const Error&) {
     } catch (const nlohmann::json::exception&) {

@@ -7,6 +7,7 @@ namespace rebake::fuzz {
 /// Each feeds bytes to one reader; anything but a rebake::Error or success is a defect.
 void read_obj_bytes(std::string_view bytes);
 void read_json_bytes(std::string_view bytes);    ///< mlp.json, rotations, baked geometry, cameras
+void read_camera_bytes(std::string_view bytes);  ///< every format of camera files
 void read_script_bytes(std::string_view bytes);  ///< scripts without access to files
 
 }  // namespace rebake::fuzz

@@ -140,6 +140,52 @@ class FileTest(WindowCase):
         editor.settle()
         self.assertFalse((out / "scene.json").exists())
 
+    def test_folders_of_other_tools_have_import_options(self):
+        editor = self.open()
+        editor.key("ctrl+o")
+        editor.click("dialog/options")
+        editor.click("dialog/options/half_direction")
+        editor.key("Escape")
+        self.assertTrue(editor.state()["asks"], "Escape closes the options only")
+        editor.click("dialog/path")
+        editor.answer(str(FICUS))
+        editor.until_ops("import")
+        self.assertTrue(editor.journal()[0]["edit"]["half_direction"])
+
+    def test_exports_in_another_format_and_layout(self):
+        editor = self.open(FICUS)
+        editor.until_ops("import")
+        editor.key("ctrl+e")
+        editor.click("dialog/options")
+        editor.click("dialog/options/layout")
+        editor.click("dialog/options/layout unsplit")
+        editor.key("Escape")
+        self.assertTrue(editor.state()["asks"], "Escape closes the options only")
+        out = self.folder / "unsplit"
+        editor.click("dialog/path")
+        editor.answer(str(out))
+        until(lambda: (out / "mlp.json").is_file(), "the export")
+        editor.settle()
+        self.assertTrue((out / "shape.obj").is_file(), list(out.iterdir()))
+        editor.key("ctrl+e")
+        editor.click("dialog/format")
+        editor.click("dialog/format rebake")
+        self.assertNotIn("dialog/plain", editor.state()["items"])
+        out = self.folder / "scene"
+        editor.click("dialog/path")
+        editor.answer(str(out))
+        until(lambda: (out / "scene.json").is_file(), "the export")
+
+    def test_screenshots_have_the_format_of_their_name(self):
+        editor = self.open_ficus()
+        for name, start in (("a.jpg", b"\xff\xd8\xff"), ("b.webp", b"RIFF"), ("c", b"\x89PNG")):
+            editor.key("F12")
+            editor.answer(str(self.folder / name))
+            picture = self.folder / (name if "." in name else name + ".png")
+            until(picture.exists, name)
+            editor.settle()
+            self.assertTrue(picture.read_bytes().startswith(start), name)
+
     def test_only_what_is_picked_is_exported(self):
         editor = self.open(FICUS, KETTLE)
         editor.until_ops("import", "import")

@@ -116,6 +116,19 @@ class Module(unittest.TestCase):
         with self.assertRaisesRegex(rebake.FieldError, "4 to 256"):
             self.document.export(self.at / "plain", plain=True, width=3)
 
+    def test_export_options(self):
+        parameters = inspect.signature(rebake.Document.export).parameters
+        self.assertEqual(list(parameters)[1:6], ["path", "layout", "format", "plain", "width"])
+        self.document.duplicate(node="ficus", translate=[2, 0, 0])
+        self.assertEqual(self.document.export(self.at / "unsplit", "unsplit", nodes=["ficus.2"]), [])
+        self.assertTrue((self.at / "unsplit" / "shape.obj").is_file())
+        self.document.export(self.at / "scene", format="rebake")
+        self.assertTrue((self.at / "scene" / "scene.json").is_file())
+        for wrong in ({"format": "obj"}, {"page_size": 0}, {"psnr": 40}, {"nodes": ["nobody"]}):
+            with self.assertRaisesRegex(rebake.FieldError, next(iter(wrong)) if "nodes" not in wrong else "nobody"):
+                self.document.export(self.at / "none", **wrong)
+        self.assertFalse((self.at / "none").exists())
+
     def test_history_journal_and_project(self):
         self.document.keep_journal(self.at / "j")
         self.document.transform(node="ficus", translate=[0, 1, 0])

@@ -1,10 +1,17 @@
-// Reading pictures keeps the stored colours and drops alpha.
+// Pictures keep their colours when they are written and read; reading drops alpha.
 #include "render/image.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/images/picture_codecs.h"
 #include "mesh_ops/formats/images/png_writer.h"
+#include "mesh_ops/scene/scene_light.h"
+#include "render/compare.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -14,8 +21,60 @@ TEST(Image, RoundTrip) {
   const TemporaryFolder folder;
   Image image{3, 2, {}};
   for (int k = 0; k < 18; ++k) image.rgb.push_back(static_cast<std::uint8_t>(k * 14));
-  write_png(image, folder.path() / "a.png", {});
+  write_picture(image, folder.path() / "a.png", {});
   EXPECT_EQ(read_image(folder.path() / "a.png"), image);
+}
+
+Image colorful() {
+  Image image{64, 48, {}};
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      for (const int value : {x * 4, y * 5, 255 - x * 2 - y}) image.rgb.push_back(static_cast<std::uint8_t>(value));
+  return image;
+}
+
+TEST(Image, LosslessFormatsKeepEveryByte) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.png", "a.webp", "a.WEBP", "unknown.format", "none"}) {
+    write_picture(colorful(), folder.path() / name, {});
+    EXPECT_EQ(read_image(folder.path() / name), colorful()) << name;
+  }
+}
+
+TEST(Image, ExtensionsDecideTheFormat) {
+  const TemporaryFolder folder;
+  for (const auto& [name, start] : std::map<std::string, std::string>{
+           {"a.png", "\x89PNG"}, {"a.jpg", "\xff\xd8\xff"}, {"a.webp", "RIFF"}, {"a.exr", "\x76\x2f\x31\x01"}}) {
+    write_picture(colorful(), folder.path() / name, {});
+    EXPECT_TRUE(read_file(folder.path() / name).starts_with(start)) << name;
+  }
+}
+
+TEST(Image, JpegsAreCloseToTheOriginal) {
+  const TemporaryFolder folder;
+  write_picture(colorful(), folder.path() / "a.jpg", {});
+  EXPECT_GT(compare(read_image(folder.path() / "a.jpg"), colorful(), 2).psnr_db, 45);
+}
+
+TEST(Image, OpenExrHoldsLinearLight) {
+  const TemporaryFolder folder;
+  const Image image = colorful();
+  write_picture(image, folder.path() / "a.exr", {});
+  const auto reader = open_picture(folder.path() / "a.exr");
+  ASSERT_TRUE(reader->layout().floating);
+  std::vector<float> pixels(image.rgb.size());
+  ASSERT_TRUE(reader->read(0, image.height, 3, pixels.data()));
+  for (std::size_t k = 0; k < pixels.size(); ++k) {
+    const double linear = to_linear(image.rgb[k] / 255.0);
+    // Half floats have eleven significant bits, and steps of 2^-24 below 2^-14.
+    EXPECT_NEAR(pixels[k], linear, std::max(linear * std::ldexp(1.0, -11), std::ldexp(1.0, -24))) << k;
+  }
+}
+
+TEST(Image, RefusesFormatsThatItCannotWrite) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(write_picture(colorful(), folder.path() / "a.gif", {}), FileError);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.gif"));
 }
 
 TEST(Image, DropsAlpha) {

@@ -51,8 +51,8 @@ void expect_as_cast(const Scene& scene, const View& view, const RenderOptions& o
   if (d.psnr_db < min_psnr_db) {
     std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
     std::replace(name.begin(), name.end(), '/', '-');
-    write_png(drawn, std::filesystem::temp_directory_path() / (name + "-drawn.png"), {});
-    write_png(cast, std::filesystem::temp_directory_path() / (name + "-cast.png"), {});
+    write_picture(drawn, std::filesystem::temp_directory_path() / (name + "-drawn.png"), {});
+    write_picture(cast, std::filesystem::temp_directory_path() / (name + "-cast.png"), {});
   }
 }
 

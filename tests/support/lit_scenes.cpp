@@ -23,7 +23,7 @@ Scene table() {
       lit_object(quads,
                  [&](const Vec3& p) -> Radiance {
                    if (p.y() > 0.01) return Radiance::Constant(0.4);
-                   const std::vector<LightSite> site{{p, {0, 1, 0}, {1, 0, 0}, 1e-3}};
+                   const std::vector<LightSite> site(1, LightSite{p, {0, 1, 0}, {1, 0, 0}, {1e-3, 0}});
                    const std::vector<std::uint8_t> up{1};
                    return 0.4 * traced_light(site, up, rays, sky, Mat3::Identity(), {.rays = 64})[0].irradiance[0];
                  }),

@@ -157,7 +157,8 @@ std::shared_ptr<const BakedObject> morpheus_object(const std::string& name, int 
   const fs::path folder = fs::path(REBAKE_TEST_DATA) / "morpheus" / name;
   if (!fs::exists(folder / "mlp.json")) return nullptr;
   const fs::path feat0 = folder / "shape0.pngfeat0.png", feat1 = folder / "shape0.pngfeat1.png";
-  const FeatureTexture read = read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);
+  const FeatureTexture read =
+      read_feature_images(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved).texels;
   auto object = std::make_shared<BakedObject>();
   Decoder decoder = read_mlp_json(read_file(folder / "mlp.json"), folder / "mlp.json").decoder;
   // This decoder was trained with directions (d + 1) / 2.
@@ -203,7 +204,8 @@ std::shared_ptr<const FeatureTexture> with_real_features(const FeatureTexture& t
   const fs::path folder = fs::path(REBAKE_TEST_DATA) / "morpheus" / name;
   const fs::path feat0 = folder / "shape0.pngfeat0.png", feat1 = folder / "shape0.pngfeat1.png";
   if (!fs::exists(feat0)) return nullptr;
-  const FeatureTexture read = read_feature_pngs(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved);
+  const FeatureTexture read =
+      read_feature_images(read_file(feat0), feat0, read_file(feat1), feat1, AlphaCode::halved).texels;
   const TexelReader real(read);
   return std::make_shared<const FeatureTexture>(FeatureTexture::from_parts(
       texture.width(), texture.height(), texture.alpha_code(), [&](int y, int count, Texel* rows) {

@@ -4,6 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/formats.h"
@@ -13,9 +17,9 @@ namespace rebake {
 
 Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) {
   if (edit.path.empty()) throw FieldError("path", "is empty");
-  if (!edit.content.empty() && hash_text(folder_hash(edit.path)) != edit.content)
+  if (!edit.content.empty() && hash_text(content_hash_at(edit.path)) != edit.content)
     throw EditError(edit.path + ": has changed since it was imported; restore the original files");
-  const Scene read = read_any(edit.path, edit.axes, progress);
+  const Scene read = read_any(edit.path, {edit.axes, edit.dialect()}, progress);
   if (read.roots.empty()) throw EditError(edit.path + ": contains no objects");
   Node node;
   if (read.roots.size() == 1) {
@@ -46,6 +50,12 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
   return {std::move(result), std::move(report)};
 }
 
+bool describes_folder(const FieldInfo& field) {
+  constexpr std::array<std::string_view, 6> names{"axes", "half_direction", "direction_first",
+                                                  "bgr",  "alpha",          "no_holes"};
+  return std::find(names.begin(), names.end(), field.name) != names.end();
+}
+
 std::string whole_title(const Import& edit) { return "Imported " + folder_title(edit.path); }
 
 REBAKE_DESCRIBE_EDIT(
@@ -53,6 +63,14 @@ REBAKE_DESCRIBE_EDIT(
       visit("path", edit.path, Need::required, "folder to read");
       visit("as", edit.as, Need::optional, "name of the new node; empty: the folder's name");
       visit("axes", edit.axes, Need::optional, "orientation of a MobileNeRF folder; Rebake scenes contain theirs");
+      visit("half_direction", edit.half_direction, Need::optional,
+            "the folder's decoder takes (d + 1) / 2 instead of the view direction d");
+      visit("direction_first", edit.direction_first, Need::optional,
+            "the folder's decoder takes the view direction before the features");
+      visit("bgr", edit.bgr, Need::optional, "the folder's images have the channels blue, green, red, alpha");
+      visit("alpha", edit.alpha, Need::optional,
+            "code of the alpha channels; default: halved, but plain in unsplit folders");
+      visit("no_holes", edit.no_holes, Need::optional, "texels whose first feature is 0 are opaque; it becomes 1/255");
       visit("ground", edit.ground, Need::optional, "move the scene's ground to the lowest point of the scene");
       visit("content", edit.content, Need::optional,
             "expected hash of the folder's files, from projects and journals; other contents are refused");

@@ -11,11 +11,22 @@ struct Import {
   std::string path;        ///< folder to read
   std::string as;          ///< name of the new node; empty: the folder's name
   Axes axes = Axes::y_up;  ///< orientation of a MobileNeRF folder; scenes contain their own
-  std::string content;     ///< expected hash of the folder's files; empty: any
-  bool ground = false;     ///< moves the scene's ground to the lowest point of all visible objects
+  RareFlag half_direction, direction_first, bgr, no_holes;  ///< as in Dialect
+  std::optional<AlphaCode> alpha;                           ///< as in Dialect
+  std::string content;                                      ///< expected hash of the folder's files; empty: any
+  bool ground = false;  ///< moves the scene's ground to the lowest point of all visible objects
+
+  Dialect dialect() const { return {half_direction.set, direction_first.set, bgr.set, alpha, no_holes.set}; }
+
+  static constexpr const char* source_field = "path";
+  EditSource input() const { return {path, content}; }
+  void set_input(const EditSource& source) { path = source.path.string(), content = source.content; }
 };
 template <>
 const EditType& edit_type<Import>();
+
+/// Whether a field of the edit tells how the folder is to be read.
+bool describes_folder(const FieldInfo& field);
 
 Outcome apply(const Scene& scene, const Import& edit, const Progress& progress = {});
 /// Title of a step: see EditType::title.

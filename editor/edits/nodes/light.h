@@ -17,6 +17,13 @@ struct LightEdit {
   double picture_degrees = 0;    ///< rotation of the environment map about the up axis
   SceneLight light;              ///< all other settings
 
+  static constexpr const char* source_field = "picture";
+  /// With the effects "none", the picture is not read.
+  EditSource input() const {
+    return effects == std::vector<std::string>{"none"} ? EditSource{} : EditSource{picture, content};
+  }
+  void set_input(const EditSource& read) { picture = read.path.string(), content = read.content; }
+
   /// The source; by default picture if there is one, else estimated.
   std::string light_source() const { return !source.empty() ? source : picture.empty() ? "estimated" : "picture"; }
 };

@@ -201,7 +201,7 @@ class EditorWindow {
     if (editor_.view.flying && plain && letter &&
         std::string_view("WASDQE").find(static_cast<char>(press.key)) != std::string_view::npos)
       return;
-    const Command* command = command_for(press, editor_);
+    const Command* command = command_for(press, editor_.settings);
     if (command == nullptr || (press.repeated && !command->repeats)) return;
     if (command->enabled(editor_))
       command->run(editor_);

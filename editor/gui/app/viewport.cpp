@@ -307,7 +307,7 @@ void Viewport::write_recovery_thumbnail(const EditorContext& editor) {
   try {
     const std::filesystem::path file = thumbnail_path(editor.now->journal);
     std::filesystem::create_directories(file.parent_path());
-    write_png(thumbnail_of(renderer_.shown_image(), Thumbnails::width, Thumbnails::height), file, {});
+    write_picture(thumbnail_of(renderer_.shown_image(), Thumbnails::width, Thumbnails::height), file, {});
   } catch (const std::exception&) {
     // The dialog then shows an icon instead.
   }
@@ -365,7 +365,7 @@ void Viewport::write_pictures(EditorContext& editor) {
     const Scene scene = with_only(editor.scene(), editor.jobs.rendered_nodes);
     const View view{with_clip_planes_for(camera, world_bounds(scene)), width, height, editor.view.samples};
     const Lighting lighting = editor.view.as_baked ? Lighting{} : lit(editor.scene());
-    write_png(renderer_.render(scene, view, {}, &lighting), path, editor.now->sources);
+    write_picture(renderer_.render(scene, view, {}, &lighting), path, editor.now->sources);
   };
   try {
     if (const auto shot = std::exchange(editor.jobs.screenshot, std::nullopt)) {

@@ -80,8 +80,8 @@ void WindowLayout::draw(Viewport& viewport, const std::vector<std::array<double,
   // Thumbnails hold the nodes of their scene, so they are freed when the panel is closed.
   if (!std::exchange(views_shown_, false)) viewport.thumbnails().forget_views();
   palette_.draw(editor_);
-  form_.draw(editor_, editor_.view.alone ? screen.x : screen.x - side_width(screen));
-  draw_keys_sheet(editor_);
+  form_.draw(editor_, editor_.dialogs, editor_.view.alone ? screen.x : screen.x - side_width(screen));
+  draw_keys_sheet(editor_.dialogs, editor_.settings);
 }
 
 // Width of the side panels in pixels, at most 40 % of the window.
@@ -146,7 +146,7 @@ void WindowLayout::sides(const ImVec2& at, const ImVec2& size) {
                       : !settings.properties_open ? size.y - closed
                                                   : size.y * static_cast<float>(settings.outline_share);
   panel("outline", at, {size.x, upper - 1}, [&] {
-    if (ui::section("Outline", settings.outline_open)) outline_.draw(editor_);
+    if (ui::section("Outline", settings.outline_open)) outline_.draw(editor_, editor_.dialogs);
   });
   panel("properties", {at.x, at.y + upper}, {size.x, size.y - upper}, [&] {
     if (ui::section("Properties", settings.properties_open)) properties_.draw(editor_);
@@ -189,7 +189,7 @@ void WindowLayout::context_menu() {
 
 void WindowLayout::menu_item(const Command& command) {
   const bool checked = command.checked != nullptr && command.checked(editor_);
-  if (ImGui::MenuItem(command.title, command.key_of(editor_).c_str(), checked, command.enabled(editor_)))
+  if (ImGui::MenuItem(command.title, command.key_of(editor_.settings).c_str(), checked, command.enabled(editor_)))
     command.run(editor_);
   announce::item(command.title);
   if (*command.help != '\0') ui::tip(command.title, "", command.help);
@@ -243,7 +243,7 @@ void WindowLayout::tool_bar() {
     // In a small window the button may be scrolled out of view.
     if (taken && std::exchange(shown_tool_, button.kind) != button.kind) ImGui::SetScrollHereY();
     if (button.kind == ToolKind::lasso) draw_lasso(color32(taken ? theme().on_accent : theme().text));
-    ui::tip(command.title, command.key_of(editor_), command.help);
+    ui::tip(command.title, command.key_of(editor_.settings), command.help);
   }
 }
 
@@ -269,7 +269,7 @@ void WindowLayout::tabs() {
       light_.draw(editor_);
       break;
     case BottomTab::script:
-      script_.draw(editor_);
+      script_.draw(editor_, editor_.dialogs);
       break;
     case BottomTab::cost:
       draw_costs(editor_.jobs, editor_.view, *editor_.now, viewport_->report(), viewport_->each_pass());
@@ -324,7 +324,7 @@ void WindowLayout::status() {
     const Command& command = command_named(one.command);
     const bool open = editor_.settings.bottom_open && editor_.settings.bottom_tab == one.tab;
     if (ui::quiet_icon(one.icon, one.command, open)) command.run(editor_);
-    ui::tip(command.title, command.key_of(editor_), command.help);
+    ui::tip(command.title, command.key_of(editor_.settings), command.help);
     ImGui::SameLine(0, px(6));
   }
 }

@@ -87,7 +87,7 @@ ui::Changed draw_field(const AdjustableField& field, json& object, double unit) 
 
 }  // namespace
 
-void AdjustPanel::draw(EditorContext& editor, const ImVec2& corner, const ImVec2& room) {
+void AdjustPanel::draw(ToolContext& editor, const ImVec2& corner, const ImVec2& room) {
   const Snapshot& now = *editor.now;
   if (now.steps_done == 0 || !now.before_last) return;
   const std::size_t edits = now.steps[now.steps_done - 1].edits;

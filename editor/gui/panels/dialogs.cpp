@@ -242,7 +242,7 @@ bool Dialogs::escape(EditorContext& editor) {
     discarding_.reset();
   else if (!editor.project.recoverable.empty())
     editor.project.recoverable.clear();
-  else if (files_.close_comparison(editor))
+  else if (files_.close_popup(editor))
     return true;
   else if (editor.dialogs.path != FileDialogPurpose::none)
     editor.dialogs.path = FileDialogPurpose::none;

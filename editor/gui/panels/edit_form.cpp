@@ -1,10 +1,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "editor/edits/nodes/import.h"
@@ -13,7 +10,6 @@
 #include "editor/fields/field_info.h"
 #include "editor/gui/panels/panels.h"
 #include "editor/gui/ui/announce.h"
-#include "editor/gui/ui/expression.h"
 #include "editor/gui/ui/widgets.h"
 
 namespace rebake {
@@ -42,41 +38,39 @@ std::size_t selected_in(const Scene& scene) {
 
 }  // namespace
 
-void EditForm::begin(const EditorContext& editor) {
-  op_ = editor.dialogs.form;
+void EditForm::begin(const DocumentEditor& editor, const std::string& op) {
+  op_ = op;
   problem_.clear();
   previewed_.clear();
-  values_ = json::object();
-  texts_.clear();
+  inputs_ = {};
   for (const FieldInfo& field : type_named(op_)->fields()) {
     if (field.type.kind == FieldKind::nodes && field.required) {
       json list = json::array();
       for (const NodeId id : editor.active_tops()) list.push_back(static_cast<std::uint64_t>(id));
-      values_[field.name] = list;
-      texts_[field.name] = list.dump();
+      inputs_.set(field.name, list);
     }
-    if (field.name == "selection" && editor.selected_triangles() > 0) values_["selection"] = true;
-    if (field.required && field.type.kind == FieldKind::number) values_[field.name] = 0;
+    if (field.name == "selection" && editor.selected_triangles() > 0) inputs_.set("selection", true);
+    if (field.required && field.type.kind == FieldKind::number) inputs_.set(field.name, 0);
   }
 }
 
 // One edit per node of the scope if the form has a node field without a choice, otherwise one edit. Throws EditError if
 // the scope has no node for the edit.
-std::vector<json> EditForm::lines(const EditorContext& editor) const {
-  json line = values_;
+std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
+  json line = inputs_.values();
   line["op"] = op_;
   const std::vector<FieldInfo> fields = type_named(op_)->fields();
   const FieldInfo* const node = field_named(fields, "node");
-  if (node == nullptr || node->type.kind != FieldKind::node || values_.contains("node")) return {line};
-  const bool deforms = field_named(fields, "selection") != nullptr;
-  const bool selection = type_named(op_)->needs_selection || (deforms && values_.value("selection", false));
+  if (node == nullptr || node->type.kind != FieldKind::node || line.contains("node")) return {line};
+  const bool takes_selection = field_named(fields, "selection") != nullptr;
+  const bool selection = type_named(op_)->needs_selection || (takes_selection && line.value("selection", false));
   const auto with_node = [&](NodeId id) {
     json one = line;
     one["node"] = static_cast<std::uint64_t>(id);
     return one;
   };
   if (editor.active.empty()) {
-    if (!node->required && (!deforms || selection)) return {line};
+    if (!node->required && (!takes_selection || selection)) return {line};
     // Nothing is picked, but the edit needs a node: use the first visible object.
     for (const PlacedNode& placed : placed_nodes(editor.scene()))
       if (placed.visible && placed.node->object) return {with_node(placed.node->id)};
@@ -93,7 +87,7 @@ std::vector<json> EditForm::lines(const EditorContext& editor) const {
 }
 
 // Requests a preview of the edits. If a field is invalid, shows its error and waits.
-void EditForm::show(EditorContext& editor) {
+void EditForm::show(DocumentEditor& editor) {
   if (editor.jobs.worker.busy()) return;
   try {
     const std::vector<json> wanted = lines(editor);
@@ -116,7 +110,7 @@ void EditForm::show(EditorContext& editor) {
 }
 
 // For selecting edits: draws the number of triangles that would be selected, counted in the preview.
-void EditForm::draw_count(const EditorContext& editor) const {
+void EditForm::draw_count(const DocumentEditor& editor) const {
   if (!type_named(op_)->selects || !previews_ || !problem_.empty()) return;
   const bool there = editor.preview && editor.preview->of == editor.scene().roots;
   std::string text = "Counting...";
@@ -127,97 +121,14 @@ void EditForm::draw_count(const EditorContext& editor) const {
   announce::item("count: " + text);
 }
 
-namespace {
-
-void draw_flag(const FieldInfo& field, json& values) {
-  const char* name = field.name.c_str();
-  bool value = values.contains(name) ? values[name].get<bool>() : field.initial == "true";
-  if (ui::toggle("##value", value)) values[name] = value;
-}
-
-void draw_node_choice(const EditorContext& editor, const FieldInfo& field, json& values) {
-  const char* name = field.name.c_str();
-  const std::uint64_t chosen = values.value(name, std::uint64_t{0});
-  const NodePtr node = find(editor.scene(), static_cast<NodeId>(chosen));
-  const std::string scope = field.name == "node" ? "Scope: " + editor.scope_words() : "(none)";
-  if (ImGui::BeginCombo("##value", node ? node->name.c_str() : scope.c_str())) {
-    if ((!field.required || field.name == "node") && ImGui::Selectable(scope.c_str(), chosen == 0)) values.erase(name);
-    for (const PlacedNode& placed : placed_nodes(editor.scene()))
-      if (ImGui::Selectable(placed.node->name.c_str(), placed.node->id == static_cast<NodeId>(chosen)))
-        values[name] = static_cast<std::uint64_t>(placed.node->id);
-    ImGui::EndCombo();
-  }
-}
-
-void draw_choice(const FieldInfo& field, json& values) {
-  const char* name = field.name.c_str();
-  const std::string initial = field.initial.size() > 2 ? field.initial.substr(1, field.initial.size() - 2) : "";
-  const std::string chosen = values.value(name, initial);
-  if (ImGui::BeginCombo("##value", chosen.c_str())) {
-    for (const std::string& word : field.type.choices)
-      if (ImGui::Selectable(word.c_str(), word == chosen)) values[name] = word;
-    ImGui::EndCombo();
-  }
-}
-
-// A text field for a value that may be an expression or JSON. `text`: the text as typed.
-void draw_text(const FieldInfo& field, std::string& text, json& values) {
-  const char* name = field.name.c_str();
-  if (ImGui::InputTextWithHint("##value", field.initial.empty() ? field.type.words.c_str() : field.initial.c_str(),
-                               &text)) {
-    if (text.empty()) {
-      values.erase(name);
-    } else if (field.type.kind == FieldKind::text) {
-      values[name] = text;
-    } else if (const auto number = evaluated(text); number) {
-      values[name] =
-          field.type.kind == FieldKind::whole_number && std::abs(*number) < 1e15 && *number == std::round(*number)
-              ? json(static_cast<std::int64_t>(*number))
-              : json(*number);
-    } else {
-      // Text that is not JSON stays a string; read_edit() reports the error.
-      const json read = json::parse(text, nullptr, false);
-      values[name] = read.is_discarded() ? json(text) : read;
-    }
-  }
-}
-
-}  // namespace
-
-// Draws a labelled input for each field.
-void EditForm::draw_fields(const EditorContext& editor, const std::vector<FieldInfo>& fields) {
-  for (const FieldInfo& field : fields) {
-    ImGui::PushID(field.name.c_str());
-    const std::string words = words_of(field.name);
-    ui::label(words.c_str());
-    switch (field.type.kind) {
-      case FieldKind::flag:
-        draw_flag(field, values_);
-        break;
-      case FieldKind::node:
-        draw_node_choice(editor, field, values_);
-        break;
-      case FieldKind::choice:
-        draw_choice(field, values_);
-        break;
-      default:
-        draw_text(field, texts_[field.name], values_);
-    }
-    announce::item(field.name);
-    ui::tip(words, field.required ? "needed" : "", field.help + " (" + notation_of(field) + ")");
-    if (problem_.find("\"" + field.name + "\"") != std::string::npos) ui::wrapped(problem_, theme().danger);
-    ImGui::PopID();
-  }
-}
-
-void EditForm::draw(EditorContext& editor, float right) {
-  if (editor.dialogs.form.empty()) {
+void EditForm::draw(DocumentEditor& editor, DialogState& dialogs, float right) {
+  if (dialogs.form.empty()) {
     // Show the preview until the applied edit is done.
     if (!op_.empty() && editor.at_rest()) editor.drop_preview();
     op_.clear();
     return;
   }
-  if (op_ != editor.dialogs.form) begin(editor);
+  if (op_ != dialogs.form) begin(editor, dialogs.form);
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   // At the viewport's top right corner, so that it does not cover the outliner, which sets the scope.
@@ -229,7 +140,7 @@ void EditForm::draw(EditorContext& editor, float right) {
   const announce::Part part("form");
   const std::vector<FieldInfo> fields = type_named(op_)->fields();
   ui::muted(type_named(op_)->help);
-  draw_fields(editor, fields);
+  inputs_.draw(editor, fields, problem_);
   const bool said = std::any_of(fields.begin(), fields.end(), [&](const FieldInfo& field) {
     return problem_.find("\"" + field.name + "\"") != std::string::npos;
   });
@@ -252,7 +163,7 @@ void EditForm::draw(EditorContext& editor, float right) {
   ImGui::SameLine();
   if (ui::toggle("Preview", previews_) && !previews_) editor.drop_preview();
   ImGui::End();
-  if (!open) editor.dialogs.form.clear();
+  if (!open) dialogs.form.clear();
 }
 
 }  // namespace rebake

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 
 #include "editor/document/sample_folder.h"
+#include "editor/edits/nodes/import.h"
 #include "editor/edits/nodes/light.h"
 #include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
@@ -21,6 +23,7 @@
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
@@ -33,7 +36,7 @@ struct Question {
   const char* title;
   const char* hint;
   const char* action;           ///< label of the primary button
-  const char* ending;           ///< extension added to names without it; empty for folders and for reading
+  const char* ending;           ///< extension added to names with none of `listed`; empty for folders and for reading
   const char* listed = ending;  ///< extensions of the listed files, separated by spaces
 };
 constexpr Question questions[] = {
@@ -43,8 +46,8 @@ constexpr Question questions[] = {
     {FileDialogPurpose::save_scene, "Save Rebake scene", "A folder with all nodes, without the history.", "Save", ""},
     {FileDialogPurpose::export_folder, "Export", "A MobileNeRF folder, or a Rebake scene if one folder cannot hold it.",
      "Export", ""},
-    {FileDialogPurpose::screenshot, "Screenshot", "A PNG file of the scene, without grid and handles.", "Write",
-     ".png"},
+    {FileDialogPurpose::screenshot, "Screenshot", "A picture of the scene, without grid and handles.", "Write", ".png",
+     ".png .jpg .jpeg .webp .exr"},
     {FileDialogPurpose::turntable, "Turntable", "A folder for images of a full orbit: 000.png, 001.png, …", "Write",
      ""},
     {FileDialogPurpose::camera_path, "Camera path", "A folder for images along a path through the stored views.",
@@ -59,6 +62,22 @@ const Question& question_of(FileDialogPurpose kind) {
   for (const Question& question : questions)
     if (question.kind == kind) return question;
   return questions[0];
+}
+
+// Extensions of the listed files, separated by spaces.
+std::string listed_endings(FileDialogPurpose asked) {
+  std::string endings = question_of(asked).listed;
+  if (asked == FileDialogPurpose::open)
+    for (const Format& format : formats())
+      if (format.read != nullptr && !format.is_folder) endings += fmt::format(" {}", format.marker);
+  return endings;
+}
+
+// The fields of an import that describe the folder.
+std::vector<FieldInfo> import_fields() {
+  std::vector<FieldInfo> fields = edit_type<Import>().fields();
+  std::erase_if(fields, [](const FieldInfo& field) { return !describes_folder(field); });
+  return fields;
 }
 
 bool reads(FileDialogPurpose asked) {
@@ -106,33 +125,6 @@ std::vector<Bookmark> bookmarks(const Settings& settings) {
   return list;
 }
 
-// Lines of text about everything that an export of this scene loses.
-std::vector<std::string> export_losses(const Scene& scene, bool plain) {
-  std::vector<std::string> lines;
-  std::size_t objects = 0, hidden = 0, turned = 0;
-  for (const PlacedNode& placed : placed_nodes(scene)) {
-    if (!placed.node->object) continue;
-    placed.visible ? ++objects : ++hidden;
-    if (placed.visible && placed.node->object->any_rotations()) ++turned;
-  }
-  if (plain) lines.emplace_back("one decoder is fitted to all objects; the message log reports its error in dB");
-  if (objects > 1 && !plain)
-    lines.push_back(
-        fmt::format("{} objects: one folder has one decoder; objects with different decoders are written as a "
-                    "scene folder (scene.json), which only Rebake can open",
-                    objects));
-  if (hidden > 0)
-    lines.push_back(hidden == 1 ? std::string("1 hidden object is not exported")
-                                : fmt::format("{} hidden objects are not exported", hidden));
-  if (turned > 0 && !plain)
-    lines.push_back(
-        fmt::format("{} deformed: the plain format stores positions, but no rotated view directions; the message log "
-                    "reports the error in dB",
-                    turned == 1 ? std::string("1 object is") : fmt::format("{} objects are", turned)));
-  lines.emplace_back("the plain format has no names, groups, stored views or history");
-  return lines;
-}
-
 }  // namespace
 
 std::vector<NodeRef> FileDialog::wanted_nodes(const EditorContext& editor) const {
@@ -148,7 +140,8 @@ void FileDialog::begin(const EditorContext& editor) {
   replacing_.clear();
   list_.look_at({}, "", true);
   video_ = false;
-  preview_.forget();
+  export_.reset();
+  import_ = {};
   width_ = editor.view.width;
   height_ = editor.view.height;
   std::error_code gone;
@@ -166,6 +159,14 @@ void FileDialog::begin(const EditorContext& editor) {
   if (!ending.empty()) path_ += title + ending;
 }
 
+// Opens with the import options of the dialog. Throws FieldError for invalid ones.
+void FileDialog::open_paths(EditorContext& editor, const std::vector<std::string>& paths) {
+  nlohmann::json edit = import_.values();
+  edit["op"] = Import::op;
+  edit["path"] = paths.front();
+  editor.project.open(paths, false, *read_edit(edit, editor.scene()).as<Import>());
+}
+
 void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
   if (makes_film(editor.dialogs.path) && editor.jobs.film)
     throw Error("another turntable or camera path is still being rendered; press Esc to cancel it");
@@ -176,13 +177,10 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
     editor.jobs.rendered_nodes = wanted_nodes(editor);
   switch (editor.dialogs.path) {
     case FileDialogPurpose::open:
-      if (list_.chosen().size() > 1) {
-        std::vector<std::string> several;
-        for (const fs::path& one : list_.chosen()) several.push_back(one.string());
-        editor.project.open(several);
-      } else {
-        editor.project.open({path.string()});
-      }
+      if (list_.chosen().size() > 1)
+        open_paths(editor, {list_.chosen().begin(), list_.chosen().end()});
+      else
+        open_paths(editor, {path.string()});
       break;
     case FileDialogPurpose::save_project:
       editor.project.save(path);
@@ -191,7 +189,7 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       editor.project.save_scene(path);
       break;
     case FileDialogPurpose::export_folder:
-      editor.project.export_to(path, wanted_nodes(editor), plain_ ? std::optional(preview_.choice()) : std::nullopt);
+      editor.project.export_scene(export_.action(editor.scene(), wanted_nodes(editor), path));
       break;
     case FileDialogPurpose::screenshot:
       editor.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
@@ -264,7 +262,7 @@ void FileDialog::take_answer(EditorContext& editor) {
   editor.settings.opened_from = fs::path(path_).parent_path().string();
   editor.dialogs.path = FileDialogPurpose::none;
   try {
-    editor.project.open(*paths);
+    open_paths(editor, *paths);
   } catch (const std::exception& failed) {
     editor.messages.fail(failed.what());
   }
@@ -324,11 +322,14 @@ FileDialog::Form FileDialog::form_for(const EditorContext& editor) {
   form.pictures = form.film || editor.dialogs.path == FileDialogPurpose::screenshot;
   form.writes = !reads(editor.dialogs.path);
   form.ending = form.film && video_ ? ".mp4" : question_of(editor.dialogs.path).ending;
+  if (form.exports && !export_.format().is_folder) form.ending = export_.format().marker;
+  form.endings =
+      form.ending == question_of(editor.dialogs.path).ending ? listed_endings(editor.dialogs.path) : form.ending;
   // If all top-level nodes are picked, the option would change nothing.
   form.offers_picked = (form.pictures || form.exports) && !editor.active.empty() &&
                        editor.active_tops().size() < editor.scene().roots.size();
   only_picked_ = only_picked_ && form.offers_picked;
-  if (form.exports) form.lost = export_losses(with_only(editor.scene(), wanted_nodes(editor)), plain_);
+  if (form.exports) form.lost = export_.losses(with_only(editor.scene(), wanted_nodes(editor)));
   return form;
 }
 
@@ -347,7 +348,8 @@ bool FileDialog::draw_path() {
 
 // Draws bookmarks and the folder's entries. Returns whether the user chose one by a double click.
 bool FileDialog::draw_entries(const EditorContext& editor, Thumbnails& thumbnails, const Form& form) {
-  const auto rows = 1.0F + static_cast<float>(int{form.pictures} + int{form.offers_picked} + int{form.exports});
+  const auto rows =
+      1.0F + static_cast<float>(int{form.pictures} + int{form.offers_picked} + int{form.exports || form.opens});
   float below = ImGui::GetFrameHeightWithSpacing() * rows + ImGui::GetTextLineHeightWithSpacing();
   for (const std::string& line : form.lost)
     below += ImGui::CalcTextSize(("•  " + line).c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y +
@@ -360,7 +362,7 @@ bool FileDialog::draw_entries(const EditorContext& editor, Thumbnails& thumbnail
   ImGui::SameLine();
   ImGui::BeginChild("entries", {0, height}, true);
   // "a/b" for "a/b/"
-  list_.look_at(typed.parent_path(), form.ending.empty() ? question_of(editor.dialogs.path).listed : form.ending);
+  list_.look_at(typed.parent_path(), form.endings);
   // Filter only when reading: a path to be written is usually a new name.
   list_.filter(form.writes ? "" : typed.filename().string());
   bool done = false;
@@ -380,17 +382,9 @@ void FileDialog::draw_export_options(EditorContext& editor, const Form& form) {
     ImGui::SameLine();
     ImGui::TextDisabled("%s", editor.scope_words().c_str());
   }
-  if (form.exports) {
-    ui::toggle("One plain folder##plain", plain_);
-    ui::tip("One plain folder", "",
-            "Merges all objects into one folder with one decoder that any MobileNeRF viewer can show.");
-    if (plain_) {
-      ImGui::SameLine();
-      if (ui::button("Compare...##compare")) preview_.begin(editor.view, editor.jobs, wanted_nodes(editor));
-      ui::tip("Compare...", "", "Compares decoders by error and frame time before the export.");
-      ui::hint(preview_.words());
-    }
-  }
+  if (form.exports) export_.draw(editor, wanted_nodes(editor), problem_);
+  if (form.opens)
+    import_options_.draw(editor, "How MobileNeRF folders of other tools are read.", import_fields(), import_, problem_);
   for (const std::string& line : form.lost) ui::muted("•  " + line);
 }
 
@@ -458,6 +452,8 @@ void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
   take_answer(editor);
   if (editor.dialogs.path == FileDialogPurpose::none) {
     asked_ = FileDialogPurpose::none;
+    export_.leave();
+    import_options_.leave();
     desktop_.reset();
     return;
   }
@@ -477,7 +473,7 @@ void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
   if (form.pictures) draw_picture_options(form);
   fs::path path(path_);
   if (!path.has_filename()) path = path.parent_path();
-  if (!form.ending.empty() && path.extension() != form.ending) path += form.ending;
+  if (!form.ending.empty() && !has_ending(path, form.endings)) path += form.ending;
   std::error_code error;
   const bool filled = fs::is_directory(path, error) && !fs::is_empty(path, error);
   const bool replaces = form.writes && path != editor.project.path && (fs::is_regular_file(path, error) || filled);
@@ -498,7 +494,7 @@ void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
   const std::string action = asks ? "Replace" : several > 1 ? fmt::format("Open {}", several) : question.action;
   done = ui::primary_button((action + "##confirm").c_str(), {width, 0}) || done;
   if (done) done = confirm(editor, path, form, replaces);
-  preview_.draw(editor.jobs);
+  export_.draw_comparison(editor.jobs);
   if (cancelled) editor.project.after_save = nullptr;
   if (done || cancelled) {
     editor.dialogs.path = FileDialogPurpose::none;

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "editor/gui/panels/export_form.h"
 #include "editor/gui/panels/folder_list.h"
-#include "editor/gui/panels/plain_preview.h"
 #include "editor/gui/platform/desktop.h"
 #include "editor/gui/state/editor_context.h"
 
@@ -20,8 +20,8 @@ class FileDialog {
   /// Draws the dialog if `editor.dialogs.path` requests one, and performs the action when the user confirms.
   void draw(EditorContext& editor, Thumbnails& thumbnails);
 
-  /// Closes the comparison of plain folders; returns false if it is not open.
-  bool close_comparison(EditorContext& editor) { return preview_.leave(editor.jobs); }
+  /// Closes the options or the comparison of plain folders; returns false if neither is open.
+  bool close_popup(EditorContext& editor) { return import_options_.close() || export_.close_popup(editor.jobs); }
   /// Whether the desktop's own file dialog is open, which runs in another process.
   bool waits() const { return desktop_ != nullptr; }
 
@@ -35,10 +35,12 @@ class FileDialog {
     bool exports = false, opens = false, film = false, pictures = false, writes = false;
     bool offers_picked = false;     ///< offers to restrict the output to the picked nodes
     std::string ending;             ///< file name extension of the answer; empty: a folder, or any
+    std::string endings;            ///< extensions of the listed files, separated by spaces
     std::vector<std::string> lost;  ///< what an export would lose
   };
   Form form_for(const EditorContext& editor);
   bool draw_path();
+  void open_paths(EditorContext& editor, const std::vector<std::string>& paths);
   bool draw_entries(const EditorContext& editor, Thumbnails& thumbnails, const Form& form);
   void draw_export_options(EditorContext& editor, const Form& form);
   void draw_picture_options(const Form& form);
@@ -61,8 +63,9 @@ class FileDialog {
   int width_ = 0, height_ = 0;                  ///< size of rendered images, pixels
   int pictures_ = 36;                           ///< number of images of a turntable or camera path
   bool video_ = false;                          ///< write a video instead of images
-  bool plain_ = false;                          ///< export everything as one plain folder
-  PlainPreview preview_;
+  ExportForm export_;
+  FieldInputs import_;  ///< options of imports: fields of the edit `import`
+  OptionsPopup import_options_;
 };
 
 }  // namespace rebake

@@ -25,23 +25,18 @@ std::string small_letters(std::string text) {
 
 }  // namespace
 
-bool holds_scene(const fs::path& folder) {
+bool holds_scene(const fs::path& path) {
   try {
-    return format_at(folder) != nullptr;
+    return format_at(path) != nullptr;
   } catch (const fs::filesystem_error&) {
     return false;  // no permission to read it
   }
 }
 
-namespace {
-
 bool has_ending(const fs::path& path, const std::string& endings) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = small_letters(path.extension().string());
   return !ending.empty() && (" " + endings + " ").find(" " + ending + " ") != std::string::npos;
 }
-
-}  // namespace
 
 void FolderList::look_at(const fs::path& folder, const std::string& endings, bool again) {
   if (folder_ == folder && endings_ == endings && !again) return;
@@ -56,7 +51,7 @@ void FolderList::look_at(const fs::path& folder, const std::string& endings, boo
     std::error_code unknown;
     const bool is_folder = at->is_directory(unknown);
     if (!is_folder && !has_ending(at->path(), endings)) continue;
-    entries_.push_back({at->path(), is_folder, is_folder && holds_scene(at->path())});
+    entries_.push_back({at->path(), is_folder, holds_scene(at->path())});
   }
   std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
     return std::pair(!a.is_folder, a.path) < std::pair(!b.is_folder, b.path);

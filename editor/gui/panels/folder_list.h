@@ -49,7 +49,9 @@ class FolderList {
   bool scrolls_ = false;        ///< scroll to `last_` in the next frame
 };
 
-/// Whether the folder is a scene in a known format.
-bool holds_scene(const std::filesystem::path& folder);
+/// Whether the path has one of these extensions, which are separated by spaces. Ignores case.
+bool has_ending(const std::filesystem::path& path, const std::string& endings);
+/// Whether the folder or file is a scene in a known format.
+bool holds_scene(const std::filesystem::path& path);
 
 }  // namespace rebake

@@ -7,7 +7,7 @@
 
 namespace rebake {
 
-void HistoryPanel::draw(EditorContext& editor) {
+void HistoryPanel::draw(DocumentEditor& editor) {
   const Snapshot& now = *editor.now;
   const announce::Part part("history");
   const bool fresh = std::exchange(of_, editor.now) != editor.now;

@@ -40,15 +40,15 @@ void line(const std::string& key, const std::string& what) {
 
 }  // namespace
 
-void draw_keys_sheet(EditorContext& editor) {
-  if (!editor.dialogs.keys) return;
+void draw_keys_sheet(DialogState& dialogs, const Settings& settings) {
+  if (!dialogs.keys) return;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSize({std::min(px(900), screen.x - px(40)), std::min(px(620), screen.y - px(60))});
   ImGui::PushStyleColor(ImGuiCol_WindowBg, color(theme().popup));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(8));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(18), px(16)});
-  ImGui::Begin("Keyboard and mouse", &editor.dialogs.keys,
+  ImGui::Begin("Keyboard and mouse", &dialogs.keys,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar(2);
@@ -58,7 +58,7 @@ void draw_keys_sheet(EditorContext& editor) {
   ImGui::TextUnformatted("Keyboard and mouse");
   ImGui::PopFont();
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - px(90));
-  if (ui::button("Close", {px(90), 0})) editor.dialogs.keys = false;
+  if (ui::button("Close", {px(90), 0})) dialogs.keys = false;
   ImGui::BeginChild("columns", {0, 0}, false);
   const int columns = ImGui::GetContentRegionAvail().x > px(640) ? 2 : 1;
   if (ImGui::BeginTable("sheet", columns, ImGuiTableFlags_SizingStretchSame)) {
@@ -80,8 +80,8 @@ void draw_keys_sheet(EditorContext& editor) {
     for (const char* menu : {"File", "Edit", "Select", "Tool", "View", "Window"}) {
       if (!begin(menu)) continue;
       for (const Command& command : command_table())
-        if (command.menu == std::string_view(menu) && *command.keys_of(editor) != '\0')
-          line(key_names(command.keys_of(editor)).c_str(), command.title);
+        if (command.menu == std::string_view(menu) && *command.keys_of(settings) != '\0')
+          line(key_names(command.keys_of(settings)).c_str(), command.title);
       ImGui::EndTable();
     }
     ImGui::EndTable();

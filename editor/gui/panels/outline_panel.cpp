@@ -54,7 +54,7 @@ std::optional<NodeId> dropped_node() {
 
 }  // namespace
 
-void OutlinerPanel::pick(EditorContext& editor, NodeId id) {
+void OutlinerPanel::pick(ToolContext& editor, NodeId id) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool active = editor.active.contains(id);
   if (io.KeyShift && find(editor.scene(), shift_from_) != nullptr) {
@@ -74,7 +74,7 @@ void OutlinerPanel::pick(EditorContext& editor, NodeId id) {
   shift_from_ = id;
 }
 
-void OutlinerPanel::draw_name(EditorContext& editor, const Node& node) {
+void OutlinerPanel::draw_name(ToolContext& editor, const Node& node) {
   if (focus_name_) ImGui::SetKeyboardFocusHere();
   focus_name_ = false;
   ImGui::SetNextItemWidth(-1);
@@ -90,7 +90,7 @@ void OutlinerPanel::draw_name(EditorContext& editor, const Node& node) {
 }
 
 // The selectable name, with its tooltip, context menu and drag and drop.
-void OutlinerPanel::draw_selectable(EditorContext& editor, const PlacedNode& placed) {
+void OutlinerPanel::draw_selectable(ToolContext& editor, DialogState& dialogs, const PlacedNode& placed) {
   const Node& node = *placed.node;
   ImGui::PushStyleColor(ImGuiCol_Text, color(placed.visible ? theme().text : theme().muted));
   const bool active = editor.active.contains(node.id);
@@ -121,7 +121,7 @@ void OutlinerPanel::draw_selectable(EditorContext& editor, const PlacedNode& pla
   }
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) {
     if (!editor.active.contains(node.id)) editor.active = {node.id};
-    editor.dialogs.context = true;
+    dialogs.context = true;
   }
   if (ImGui::BeginDragDropSource()) {
     ImGui::SetDragDropPayload("node", &node.id, sizeof node.id);
@@ -134,7 +134,7 @@ void OutlinerPanel::draw_selectable(EditorContext& editor, const PlacedNode& pla
 namespace {
 
 // Toggles for visibility and lock.
-void draw_toggles(EditorContext& editor, const Node& node) {
+void draw_toggles(ToolContext& editor, const Node& node) {
   const NodeRef ref{node.id};
   ImGui::TableNextColumn();
   const bool on_accent = editor.active.contains(node.id);
@@ -144,7 +144,7 @@ void draw_toggles(EditorContext& editor, const Node& node) {
     else
       editor.edit(Show{ref});
   }
-  ui::tip(node.visible ? "Hide" : "Show", command_key("Hide", editor), "Hidden nodes are not exported.");
+  ui::tip(node.visible ? "Hide" : "Show", command_key("Hide", editor.settings), "Hidden nodes are not exported.");
   ImGui::TableNextColumn();
   if (ui::quiet_icon(node.locked ? icons::lock : icons::lock_open_outline, "Locked", node.locked, on_accent)) {
     if (node.locked)
@@ -157,7 +157,7 @@ void draw_toggles(EditorContext& editor, const Node& node) {
 
 }  // namespace
 
-void OutlinerPanel::draw_node(EditorContext& editor, const PlacedNode& placed, int depth) {
+void OutlinerPanel::draw_node(ToolContext& editor, DialogState& dialogs, const PlacedNode& placed, int depth) {
   const Node& node = *placed.node;
   const announce::Part part(node.name);
   ImGui::PushID(static_cast<int>(static_cast<std::uint64_t>(node.id)));
@@ -179,7 +179,7 @@ void OutlinerPanel::draw_node(EditorContext& editor, const PlacedNode& placed, i
   if (renaming_ == node.id) {
     draw_name(editor, node);
   } else {
-    draw_selectable(editor, placed);
+    draw_selectable(editor, dialogs, placed);
   }
   ImGui::TableNextColumn();
   if (node.object) {
@@ -194,7 +194,7 @@ void OutlinerPanel::draw_node(EditorContext& editor, const PlacedNode& placed, i
   ImGui::PopID();
 }
 
-void OutlinerPanel::draw(EditorContext& editor) {
+void OutlinerPanel::draw(ToolContext& editor, DialogState& dialogs) {
   const Scene& scene = editor.scene();
   const announce::Part part("outline");
   if (scene.roots.empty()) {
@@ -221,7 +221,7 @@ void OutlinerPanel::draw(EditorContext& editor) {
       depths[child->id] = depth + 1;
       if (hides) inside_folded.insert(child->id);
     }
-    if (!inside_folded.contains(id)) draw_node(editor, placed, depth);
+    if (!inside_folded.contains(id)) draw_node(editor, dialogs, placed, depth);
   }
   // Area below the last node: a click clears the picked nodes, a drop moves a node to the top level.
   ImGui::TableNextRow();

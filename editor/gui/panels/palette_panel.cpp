@@ -34,8 +34,8 @@ struct Entry {
 std::vector<Entry> entries(const EditorContext& editor, const std::string& filter) {
   std::vector<Entry> all;
   for (const Command& command : command_table())
-    all.push_back(
-        {std::string(command.menu) + ": " + command.title, key_names(command.keys_of(editor)), command.help, &command});
+    all.push_back({std::string(command.menu) + ": " + command.title, key_names(command.keys_of(editor.settings)),
+                   command.help, &command});
   for (const EditType* type : edit_types())
     all.push_back({form_title(type->op), "", type->help, nullptr, nullptr, type->op});
   for (const auto& [name, camera] : editor.scene().views)

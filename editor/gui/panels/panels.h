@@ -7,6 +7,7 @@
 #include <string>
 
 #include "editor/edits/nodes/place.h"
+#include "editor/gui/panels/field_inputs.h"
 #include "editor/gui/state/editor_context.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/view/thumbnails.h"
@@ -20,13 +21,13 @@ namespace rebake {
 /// Outliner: the tree of nodes with name, order, triangle count, visibility and lock.
 class OutlinerPanel {
  public:
-  void draw(EditorContext& editor);
+  void draw(ToolContext& editor, DialogState& dialogs);
 
  private:
-  void draw_selectable(EditorContext& editor, const PlacedNode& placed);
-  void draw_node(EditorContext& editor, const PlacedNode& placed, int depth);
-  void draw_name(EditorContext& editor, const Node& node);
-  void pick(EditorContext& editor, NodeId id);
+  void draw_selectable(ToolContext& editor, DialogState& dialogs, const PlacedNode& placed);
+  void draw_node(ToolContext& editor, DialogState& dialogs, const PlacedNode& placed, int depth);
+  void draw_name(ToolContext& editor, const Node& node);
+  void pick(ToolContext& editor, NodeId id);
   std::set<NodeId> folded_;                                     ///< collapsed groups
   NodeId renaming_ = NodeId::none, shift_from_ = NodeId::none;  ///< node being renamed; one end of a Shift range
   std::string name_;                                            ///< typed name
@@ -36,13 +37,13 @@ class OutlinerPanel {
 /// Number fields for position, rotation and scale of the picked nodes.
 class PropertiesPanel {
  public:
-  void draw(EditorContext& editor);
+  void draw(DocumentEditor& editor);
 
  private:
   /// Draws three number fields; returns their change in this frame.
   ui::Changed row(const char* name, Vec3& value, const char* format, double step);
-  void draw_one(EditorContext& editor, const PlacedNode& placed);
-  void draw_several(EditorContext& editor);
+  void draw_one(DocumentEditor& editor, const PlacedNode& placed);
+  void draw_several(DocumentEditor& editor);
   std::set<NodeId> of_;                                        ///< nodes that the numbers belong to
   Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};  ///< scene units, Euler angles in degrees, factors
   bool dragging_ = false;         ///< a number is being dragged, so the numbers differ from the document
@@ -53,7 +54,7 @@ class PropertiesPanel {
 /// List of all history steps, done and undone. A click undoes or redoes up to a step.
 class HistoryPanel {
  public:
-  void draw(EditorContext& editor);
+  void draw(DocumentEditor& editor);
 
  private:
   std::shared_ptr<const Snapshot> of_;  ///< snapshot drawn last
@@ -63,11 +64,11 @@ class HistoryPanel {
 class ViewsPanel {
  public:
   /// `drawn`: the scene with the viewport's background, for thumbnails.
-  void draw(EditorContext& editor, const Scene& drawn, Thumbnails& thumbnails);
+  void draw(ToolContext& editor, const Scene& drawn, Thumbnails& thumbnails);
 
  private:
-  void draw_card(EditorContext& editor, const Scene& drawn, Thumbnails& thumbnails, const std::string& name);
-  void draw_name(EditorContext& editor, const std::string& name, float width);
+  void draw_card(ToolContext& editor, const Scene& drawn, Thumbnails& thumbnails, const std::string& name);
+  void draw_name(ToolContext& editor, const std::string& name, float width);
   std::string renaming_, name_;  ///< view being renamed, and the typed name
   bool focus_name_ = false;
 };
@@ -91,7 +92,7 @@ class LightPanel {
 /// All edits as script lines, to copy or save, and a field to run a typed line.
 class ScriptPanel {
  public:
-  void draw(EditorContext& editor);
+  void draw(DocumentEditor& editor, DialogState& dialogs);
 
  private:
   std::string line_, problem_;          ///< typed line, and its error message
@@ -117,7 +118,7 @@ void draw_costs(Jobs& jobs, ViewState& view, const Snapshot& now, const FrameRep
 class AdjustPanel {
  public:
   /// Draws with the lower left corner at `corner` (window pixels), over a viewport of size `room` (pixels).
-  void draw(EditorContext& editor, const ImVec2& corner, const ImVec2& room);
+  void draw(ToolContext& editor, const ImVec2& corner, const ImVec2& room);
 
  private:
   /// The last `edits` edits with the changed fields.
@@ -130,8 +131,8 @@ class AdjustPanel {
 
 /// Draws the latest messages as toasts, stacked upwards from their lower right `corner` (window pixels).
 void draw_toasts(Messages& messages, const ImVec2& corner);
-/// Draws the sheet of keys and mouse actions if `editor.dialogs.keys` is set.
-void draw_keys_sheet(EditorContext& editor);
+/// Draws the sheet of keys and mouse actions if `dialogs.keys` is set.
+void draw_keys_sheet(DialogState& dialogs, const Settings& settings);
 /// Draws the start page (open, recent, samples) centred at `middle` (window pixels) while the scene is empty.
 void draw_start(EditorContext& editor, Thumbnails& thumbnails, const ImVec2& middle);
 
@@ -152,23 +153,21 @@ class PalettePanel {
 class EditForm {
  public:
   /// `right`: left border of the panels at the right, in window pixels.
-  void draw(EditorContext& editor, float right);
+  void draw(DocumentEditor& editor, DialogState& dialogs, float right);
 
  private:
-  void draw_fields(const EditorContext& editor, const std::vector<FieldInfo>& fields);
-  /// Resets the form for the edit `editor.dialogs.form`.
-  void begin(const EditorContext& editor);
+  /// Resets the form for the edit `op`.
+  void begin(const DocumentEditor& editor, const std::string& op);
   /// The edits that the fields describe: one, or one per picked node. Throws EditError.
-  std::vector<nlohmann::json> lines(const EditorContext& editor) const;
+  std::vector<nlohmann::json> lines(const DocumentEditor& editor) const;
   /// Requests a preview if the fields or the scene have changed.
-  void show(EditorContext& editor);
-  void draw_count(const EditorContext& editor) const;
+  void show(DocumentEditor& editor);
+  void draw_count(const DocumentEditor& editor) const;
   bool previews_ = true;
-  std::string previewed_;                     ///< JSON of the edits that the preview shows or is computing
-  std::vector<NodePtr> previewed_on_;         ///< root nodes of the scene that the preview started from
-  std::string op_, problem_;                  ///< op of the edit; error message
-  nlohmann::json values_;                     ///< fields that are set
-  std::map<std::string, std::string> texts_;  ///< typed texts of fields with a text box, by field name
+  std::string previewed_;              ///< JSON of the edits that the preview shows or is computing
+  std::vector<NodePtr> previewed_on_;  ///< root nodes of the scene that the preview started from
+  std::string op_, problem_;           ///< op of the edit; error message
+  FieldInputs inputs_;
 };
 
 }  // namespace rebake

@@ -211,13 +211,8 @@ bool PlainPreview::leave(Jobs& jobs) {
   return true;
 }
 
-std::string PlainPreview::words() const {
-  if (!choice_.way) return "the narrowest decoder that reaches 40 dB";
-  return fmt::format("{}, width {}", notation_of(*choice_.way), *choice_.width.neurons);
-}
-
-bool PlainPreview::draw(Jobs& jobs) {
-  if (!open_ && !ImGui::IsPopupOpen("###plain")) return false;
+std::optional<PlainPreview::Choice> PlainPreview::draw(Jobs& jobs) {
+  if (!open_ && !ImGui::IsPopupOpen("###plain")) return std::nullopt;
   if (open_ && !ImGui::IsPopupOpen("###plain")) ImGui::OpenPopup("###plain");
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const ImVec2 size{std::min(px(620), screen.x - px(20)), std::min(px(760), screen.y - px(20))};
@@ -228,17 +223,17 @@ bool PlainPreview::draw(Jobs& jobs) {
                                             ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                                 ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings);
   ImGui::PopStyleVar();
-  if (!begun) return false;
+  if (!begun) return std::nullopt;
   if (!open_) {
     ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
-    return false;
+    return std::nullopt;
   }
   const announce::Part part("plain");
   ImGui::PushFont(fonts().heading);
   ImGui::TextUnformatted("One plain folder");
   ImGui::PopFont();
-  bool chosen = false;
+  std::optional<Choice> chosen;
   const float buttons = ImGui::GetFrameHeightWithSpacing() + px(8);
   ImGui::BeginChild("content", {0, -buttons});
   if (!problem_.empty()) {
@@ -271,8 +266,7 @@ bool PlainPreview::draw(Jobs& jobs) {
   ImGui::BeginDisabled(!can);
   if (ui::primary_button("Use this##use", {width, 0})) {
     const FuseTrial& trial = measured_->rows[row_].trial;
-    choice_ = {{trial.width}, trial.way};
-    chosen = true;
+    chosen = {trial.way, trial.width};
   }
   ImGui::EndDisabled();
   if (cancelled || chosen) leave(jobs);

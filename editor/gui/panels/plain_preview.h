@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "editor/gui/state/jobs.h"
-#include "editor/gui/state/project.h"
 #include "editor/gui/state/view_state.h"
+#include "mesh_ops/features/distill/fuse_method.h"
 #include "render/picture_texture.h"
 
 namespace rebake {
@@ -19,15 +19,14 @@ class PlainPreview {
   /// Opens the dialog and measures on a sample of the texels, in the current view. `nodes`: nodes to export; empty for
   /// all.
   void begin(const ViewState& view, Jobs& jobs, std::vector<NodeRef> nodes);
-  /// Draws the dialog if it is open; returns true in the frame in which the user confirms a choice.
-  bool draw(Jobs& jobs);
+  /// Draws the dialog if it is open; returns the choice in the frame in which the user confirms it.
+  struct Choice {
+    FuseMethod way;
+    int width;  ///< of the decoder's hidden layers
+  };
+  std::optional<Choice> draw(Jobs& jobs);
   /// Closes the dialog in the next frame and cancels its job; returns false if it is not open.
   bool leave(Jobs& jobs);
-  /// Resets the choice to automatic.
-  void forget() { choice_ = {}; }
-  const Project::PlainChoice& choice() const { return choice_; }
-  /// The choice as text.
-  std::string words() const;
 
  private:
   struct Measured;
@@ -44,7 +43,6 @@ class PlainPreview {
   std::size_t row_ = 0, shown_ = 0;      ///< selected row, and row whose image is shown
   std::optional<PictureTexture> exact_, plain_;
   float split_ = 0.5F;  ///< divider as a share of the image width; the exact image is at the left
-  Project::PlainChoice choice_;
   std::string problem_;
 };
 

@@ -24,7 +24,7 @@ Vec3 shown(const Vec3& value, double size) {
   return result;
 }
 
-std::string rows_of(const EditorContext& editor) {
+std::string rows_of(const DocumentEditor& editor) {
   std::size_t triangles = 0, sets = 0;
   std::uint64_t bytes = 0;
   bool bent = false;
@@ -69,7 +69,7 @@ ui::Changed PropertiesPanel::row(const char* name, Vec3& value, const char* form
   return result;
 }
 
-void PropertiesPanel::draw_one(EditorContext& editor, const PlacedNode& placed) {
+void PropertiesPanel::draw_one(DocumentEditor& editor, const PlacedNode& placed) {
   const Placement now = placement_of(placed.node->to_parent);
   const double size = std::max(1e-300, subtree_bounds(editor.scene(), placed.node->id).isEmpty()
                                            ? 1.0
@@ -111,7 +111,7 @@ void PropertiesPanel::draw_one(EditorContext& editor, const PlacedNode& placed) 
     editor.edit(place);
 }
 
-void PropertiesPanel::draw_several(EditorContext& editor) {
+void PropertiesPanel::draw_several(DocumentEditor& editor) {
   Box box;
   for (const NodeId id : editor.active) box.extend(subtree_bounds(editor.scene(), id));
   if (box.isEmpty()) return;
@@ -148,7 +148,7 @@ void PropertiesPanel::draw_several(EditorContext& editor) {
     editor.edits(list);
 }
 
-void PropertiesPanel::draw(EditorContext& editor) {
+void PropertiesPanel::draw(DocumentEditor& editor) {
   const announce::Part part("properties");
   if (editor.active.empty()) {
     ui::muted("Pick a node in the outline or in the viewport.");

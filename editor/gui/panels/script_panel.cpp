@@ -11,7 +11,7 @@
 
 namespace rebake {
 
-void ScriptPanel::draw(EditorContext& editor) {
+void ScriptPanel::draw(DocumentEditor& editor, DialogState& dialogs) {
   const announce::Part part("script");
   if (ui::button("Copy")) {
     std::string text;
@@ -19,9 +19,9 @@ void ScriptPanel::draw(EditorContext& editor) {
     ImGui::SetClipboardText(text.c_str());
   }
   ImGui::SameLine();
-  if (ui::button("Save...")) editor.dialogs.path = FileDialogPurpose::save_script;
+  if (ui::button("Save...")) dialogs.path = FileDialogPurpose::save_script;
   ImGui::SameLine();
-  if (ui::button("Run...")) editor.dialogs.path = FileDialogPurpose::run_script;
+  if (ui::button("Run...")) dialogs.path = FileDialogPurpose::run_script;
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1);
   if (ImGui::InputTextWithHint("##line", "A line, e.g. {\"op\": \"select\", \"all\": true}", &line_,

@@ -17,9 +17,7 @@ namespace rebake {
 
 namespace {
 
-void look_through(EditorContext& editor, const std::string& name) {
-  editor.view.camera = editor.scene().views.at(name);
-}
+void look_through(ToolContext& editor, const std::string& name) { editor.view.camera = editor.scene().views.at(name); }
 
 // Whether the camera shows the stored view. Near and far planes do not count, since they follow the scene.
 bool looks_from(const Camera& camera, const Camera& stored) {
@@ -33,7 +31,7 @@ bool looks_from(const Camera& camera, const Camera& stored) {
 
 }  // namespace
 
-void ViewsPanel::draw_name(EditorContext& editor, const std::string& name, float width) {
+void ViewsPanel::draw_name(ToolContext& editor, const std::string& name, float width) {
   if (renaming_ != name) {
     ImGui::TextUnformatted(ui::shortened(name, width - px(52)).c_str());
     return;
@@ -46,7 +44,7 @@ void ViewsPanel::draw_name(EditorContext& editor, const std::string& name, float
   if (name_ != name && !name_.empty()) editor.edit(RenameView{name, name_});
 }
 
-void ViewsPanel::draw_card(EditorContext& editor, const Scene& drawn, Thumbnails& thumbnails, const std::string& name) {
+void ViewsPanel::draw_card(ToolContext& editor, const Scene& drawn, Thumbnails& thumbnails, const std::string& name) {
   const ImVec2 size{px(160), px(100)};
   const announce::Part part(name);
   ImGui::PushID(name.c_str());
@@ -79,7 +77,7 @@ void ViewsPanel::draw_card(EditorContext& editor, const Scene& drawn, Thumbnails
   ImGui::PopID();
 }
 
-void ViewsPanel::draw(EditorContext& editor, const Scene& drawn, Thumbnails& thumbnails) {
+void ViewsPanel::draw(ToolContext& editor, const Scene& drawn, Thumbnails& thumbnails) {
   const announce::Part part("views");
   if (editor.scene().roots.empty()) {
     ui::muted("No scene is open.");

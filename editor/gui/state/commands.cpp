@@ -217,7 +217,7 @@ void next_channel(EditorContext& editor) {
 
 }  // namespace
 
-void store_view(EditorContext& editor, const std::string& name) {
+void store_view(ToolContext& editor, const std::string& name) {
   StoreView edit;
   edit.name = name;
   edit.camera = editor.view.camera;
@@ -479,13 +479,13 @@ const Command& command_named(const std::string& title) {
   throw std::invalid_argument("no command \"" + title + "\"");
 }
 
-std::string command_key(const std::string& title, const EditorContext& editor) {
-  return command_named(title).key_of(editor);
+std::string command_key(const std::string& title, const Settings& settings) {
+  return command_named(title).key_of(settings);
 }
 
-const Command* command_for(const KeyPress& press, const EditorContext& editor) {
+const Command* command_for(const KeyPress& press, const Settings& settings) {
   for (const Command& command : command_table()) {
-    std::istringstream keys(command.keys_of(editor));
+    std::istringstream keys(command.keys_of(settings));
     for (std::string key; keys >> key;)
       if (parse_key(key) == press) return &command;
   }

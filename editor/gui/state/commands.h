@@ -24,10 +24,10 @@ struct Command {
   bool repeats = false;                                    ///< runs repeatedly while its key is held
 
   /// Keys in the current keymap.
-  const char* keys_of(const EditorContext& editor) const { return editor.settings.blender_keys ? blender_keys : keys; }
+  const char* keys_of(const Settings& settings) const { return settings.blender_keys ? blender_keys : keys; }
   /// Name of the first key in the current keymap; empty for none.
-  std::string key_of(const EditorContext& editor) const {
-    const std::string all = keys_of(editor);
+  std::string key_of(const Settings& settings) const {
+    const std::string all = keys_of(settings);
     return key_names(all.substr(0, all.find(' ')));
   }
 };
@@ -41,12 +41,12 @@ std::optional<KeyPress> parse_key(const std::string& text);
 /// The command with this title. Throws std::invalid_argument if there is none.
 const Command& command_named(const std::string& title);
 /// First key of a command in the current keymap, for tooltips; empty for none.
-std::string command_key(const std::string& title, const EditorContext& editor);
+std::string command_key(const std::string& title, const Settings& settings);
 
 /// Stores the current camera as a view of the scene, under `name` or, if empty, the first free name "view N".
-void store_view(EditorContext& editor, const std::string& name = "");
+void store_view(ToolContext& editor, const std::string& name = "");
 
 /// The command that a key starts in the current keymap; null for none.
-const Command* command_for(const KeyPress& press, const EditorContext& editor);
+const Command* command_for(const KeyPress& press, const Settings& settings);
 
 }  // namespace rebake

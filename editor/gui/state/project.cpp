@@ -8,11 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "editor/actions/export_action.h"
 #include "editor/actions/save.h"
 #include "editor/document/journal.h"
 #include "editor/document/project.h"
-#include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
 
@@ -39,7 +37,7 @@ void Project::begin_journal() {
   worker_.start("journal", [](Session& session) { keep_journal(session.document); });
 }
 
-void Project::open(const std::vector<std::string>& paths, bool wanted) {
+void Project::open(const std::vector<std::string>& paths, bool wanted, const Import& options) {
   if (paths.size() == 1 && is_project_file(paths.front())) {
     if (unsaved() && !wanted) {
       to_open = paths;
@@ -49,7 +47,7 @@ void Project::open(const std::vector<std::string>& paths, bool wanted) {
     return;
   }
   for (const std::string& source : paths) {
-    Import import;
+    Import import = options;
     import.path = source;
     worker_.start(
         "import",
@@ -184,17 +182,8 @@ void Project::save_scene(const fs::path& folder) {
   });
 }
 
-void Project::export_to(const fs::path& folder, const std::vector<NodeRef>& nodes,
-                        const std::optional<PlainChoice>& plain) {
-  worker_.start("export", [folder, nodes, plain](Session& session) {
-    ExportAction action;
-    action.out = folder.string();
-    action.nodes = nodes;
-    if (plain) {
-      action.plain = true;
-      action.width = plain->width;
-      action.way = plain->way;
-    }
+void Project::export_scene(const ExportAction& action) {
+  worker_.start("export", [action](Session& session) {
     run(session, action);
     session.drop_renderer();  // frees the copy of the scene on the GPU that measured the loss
   });

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "editor/fields/values.h"
+#include "editor/actions/export_action.h"
+#include "editor/edits/nodes/import.h"
 #include "editor/gui/state/lost_work.h"
 #include "editor/gui/state/messages.h"
 #include "editor/gui/state/settings.h"
 #include "editor/gui/state/worker.h"
-#include "mesh_ops/features/distill/fuse_method.h"
 
 namespace rebake {
 
@@ -49,7 +49,8 @@ class Project {
   void begin_journal();
   /// Imports folders and scenes. A project must be the only path and replaces the document. If there is unsaved work
   /// and `wanted` is false, only sets `to_open`, so that a dialog asks first.
-  void open(const std::vector<std::string>& paths, bool wanted = false);
+  /// `options`: how folders are read.
+  void open(const std::vector<std::string>& paths, bool wanted = false, const Import& options = {});
   /// Replaces the document by the work of a journal; unsaved work in the document goes to the trash. If sources are
   /// missing, sets `relinking` instead, unless `go_on_without`: then recovers as much as possible.
   void recover(const std::filesystem::path& journal, const SourceLinks& links = {}, bool go_on_without = false);
@@ -58,14 +59,7 @@ class Project {
   void relink(bool go_on_without);
   void save(const std::filesystem::path& file);
   void save_scene(const std::filesystem::path& folder);
-  /// Options of an export as one plain folder, as in ExportAction.
-  struct PlainChoice {
-    FuseWidth width;
-    std::optional<FuseMethod> way;
-  };
-  /// Exports `nodes`, or the whole scene if empty; as one plain folder if `plain` is set.
-  void export_to(const std::filesystem::path& folder, const std::vector<NodeRef>& nodes = {},
-                 const std::optional<PlainChoice>& plain = {});
+  void export_scene(const ExportAction& action);
   void save_script(const std::filesystem::path& file);
   void run_script(const std::filesystem::path& file);
   /// Whether the scene differs from the saved project, or from the imports if there is none.

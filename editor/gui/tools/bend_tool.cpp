@@ -62,7 +62,7 @@ std::function<Deformed(const Vec3&)> deformation_along(const Edit& edit, const S
 
 }  // namespace
 
-BendTool::SpineInputs BendTool::current_inputs(const EditorContext& editor) const {
+BendTool::SpineInputs BendTool::current_inputs(const ToolContext& editor) const {
   SpineInputs found{axis_, false, {}};
   for (const DeformTarget& target : editor.deform_targets()) {
     found.selection = target.selection;
@@ -74,12 +74,12 @@ BendTool::SpineInputs BendTool::current_inputs(const EditorContext& editor) cons
   return found;
 }
 
-bool BendTool::last_edit_follows_spine(const EditorContext& editor) const {
+bool BendTool::last_edit_follows_spine(const ToolContext& editor) const {
   const std::optional<DeformAxisTarget> here = current_target(editor);
   return here && !editor.now->done.empty() && deformation_along(editor.now->done.back(), here->spine) != nullptr;
 }
 
-void BendTool::find_spine(EditorContext& editor) {
+void BendTool::find_spine(ToolContext& editor) {
   const SpineInputs now = current_inputs(editor);
   if (now == spine_inputs_) return;
   spine_inputs_ = now;
@@ -117,7 +117,7 @@ void BendTool::find_spine(EditorContext& editor) {
       });
 }
 
-std::optional<BendTool::DeformAxisTarget> BendTool::current_target(const EditorContext& editor) const {
+std::optional<BendTool::DeformAxisTarget> BendTool::current_target(const ToolContext& editor) const {
   if (!found_) return std::nullopt;
   DeformAxisTarget bent{editor.deform_targets(), *found_};
   if (bent.targets.empty()) return std::nullopt;
@@ -130,7 +130,7 @@ std::optional<BendTool::DeformAxisTarget> BendTool::current_target(const EditorC
   return bent;
 }
 
-Vec3 BendTool::shown(const EditorContext& editor, const DeformAxisTarget& bent, const Vec3& point) {
+Vec3 BendTool::shown(const ToolContext& editor, const DeformAxisTarget& bent, const Vec3& point) {
   const std::vector<Edit>& done = editor.now->done;
   std::size_t first = done.size();
   while (first > 0 && deformation_along(done[first - 1], bent.spine) != nullptr) --first;
@@ -164,7 +164,7 @@ Vec3 BendTool::place(const DeformAxisTarget& bent, Handle handle) const {
   return handle == Handle::from ? bent.at(from_) : handle == Handle::to ? bent.at(to_) : bent.tip();
 }
 
-BendTool::Handle BendTool::handle_at(const EditorContext& editor, const DeformAxisTarget& bent,
+BendTool::Handle BendTool::handle_at(const ToolContext& editor, const DeformAxisTarget& bent,
                                      const ViewportProjection& lens, const Vec2& at) const {
   for (const Handle handle : {Handle::tip, Handle::to, Handle::from})
     if (const auto pixel = lens.pixel(shown(editor, bent, place(bent, handle)));
@@ -173,7 +173,7 @@ BendTool::Handle BendTool::handle_at(const EditorContext& editor, const DeformAx
   return Handle::none;
 }
 
-std::vector<Edit> BendTool::edits(const EditorContext& editor, const ViewportProjection& lens) const {
+std::vector<Edit> BendTool::edits(const ToolContext& editor, const ViewportProjection& lens) const {
   const DeformAxisTarget& bent = *drag_target_;
   const auto foot = lens.pixel(shown(editor, bent, bent.at(from_))), tip = lens.pixel(shown(editor, bent, bent.tip()));
   if (!foot || !tip || !(to_ > from_)) return {};
@@ -228,7 +228,7 @@ std::vector<Edit> BendTool::edits(const EditorContext& editor, const ViewportPro
   }
 }
 
-void BendTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+void BendTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (held_ == Handle::none) {
     find_spine(editor);
     if (!pointer.pressed || !pointer.inside) return;
@@ -273,9 +273,7 @@ void BendTool::pointer(EditorContext& editor, const ViewportProjection& lens, co
   if (pointer.released) held_ = Handle::none;
 }
 
-bool BendTool::key(EditorContext& /*editor*/, const KeyPress& press) {
-  return held_ == Handle::tip && typed_.key(press);
-}
+bool BendTool::key(ToolContext& /*editor*/, const KeyPress& press) { return held_ == Handle::tip && typed_.key(press); }
 
 std::string BendTool::readout(const Edit& edit) {
   if (const auto* bend = edit.as<Bend>()) return fmt::format("Bend {:.1f}°", bend->degrees);
@@ -285,8 +283,8 @@ std::string BendTool::readout(const Edit& edit) {
   return "";
 }
 
-void BendTool::draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer,
-                    ImDrawList& list, const ImVec2& origin) const {
+void BendTool::draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+                    const ImVec2& origin) const {
   const std::optional<DeformAxisTarget> here = held_ != Handle::none ? drag_target_ : current_target(editor);
   if (!here) return;
   const announce::Part part("bend");
@@ -311,7 +309,7 @@ void BendTool::draw(const EditorContext& editor, const ViewportProjection& lens,
              readout_ + (typed_.text().empty() ? "" : "  [" + typed_.text() + "]"));
 }
 
-void BendTool::add_guides(const EditorContext& editor, Guides& guides) const {
+void BendTool::add_guides(const ToolContext& editor, Guides& guides) const {
   const std::optional<DeformAxisTarget> here = held_ != Handle::none ? drag_target_ : current_target(editor);
   if (!here) return;
   // A polyline, since the spine may be curved.
@@ -339,7 +337,7 @@ void BendTool::add_guides(const EditorContext& editor, Guides& guides) const {
   }
 }
 
-void BendTool::options(EditorContext& editor) {
+void BendTool::options(ToolContext& editor) {
   int kind = static_cast<int>(kind_);
   if (ui::choice("kind", kind, {"Bend", "Twist", "Taper", "Stretch"})) kind_ = static_cast<Kind>(kind);
   ui::flow(px(130));
@@ -383,7 +381,7 @@ void BendTool::options(EditorContext& editor) {
                                        : "Nothing to deform. Select triangles or pick a node.");
 }
 
-void BendTool::cancel(EditorContext& editor) {
+void BendTool::cancel(ToolContext& editor) {
   held_ = Handle::none;
   falloff_overlay_ = {};
   editor.drop_preview();

@@ -11,14 +11,14 @@ namespace rebake {
 /// limits of the deformed range.
 class BendTool final : public ViewTool {
  public:
-  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
-  void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+  void pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  void add_guides(const EditorContext& editor, Guides& guides) const override;
-  bool key(EditorContext& editor, const KeyPress& press) override;
-  void options(EditorContext& editor) override;
+  void add_guides(const ToolContext& editor, Guides& guides) const override;
+  bool key(ToolContext& editor, const KeyPress& press) override;
+  void options(ToolContext& editor) override;
   bool busy() const override { return held_ != Handle::none; }
-  void cancel(EditorContext& editor) override;
+  void cancel(ToolContext& editor) override;
 
  private:
   /// Handles: the limits of the deformed range, and the tip, beyond the far end. The foot, the fixed end, has none.
@@ -42,21 +42,21 @@ class BendTool final : public ViewTool {
     bool operator==(const SpineInputs&) const = default;
   };
   /// The current targets and axis; nothing without a spine.
-  std::optional<DeformAxisTarget> current_target(const EditorContext& editor) const;
+  std::optional<DeformAxisTarget> current_target(const ToolContext& editor) const;
   /// Searches for the spine again if its inputs have changed.
-  void find_spine(EditorContext& editor);
+  void find_spine(ToolContext& editor);
   /// Whether the document's last edit was made along the current spine.
-  bool last_edit_follows_spine(const EditorContext& editor) const;
+  bool last_edit_follows_spine(const ToolContext& editor) const;
   /// Inputs of a spine search now.
-  SpineInputs current_inputs(const EditorContext& editor) const;
+  SpineInputs current_inputs(const ToolContext& editor) const;
   /// World position of a handle before any edit along the spine.
   Vec3 place(const DeformAxisTarget& bent, Handle handle) const;
   /// Position of a point of the spine after the last edits along it.
-  static Vec3 shown(const EditorContext& editor, const DeformAxisTarget& bent, const Vec3& point);
-  Handle handle_at(const EditorContext& editor, const DeformAxisTarget& bent, const ViewportProjection& lens,
+  static Vec3 shown(const ToolContext& editor, const DeformAxisTarget& bent, const Vec3& point);
+  Handle handle_at(const ToolContext& editor, const DeformAxisTarget& bent, const ViewportProjection& lens,
                    const Vec2& at) const;
   /// One edit per target for the current drag; empty if it changes nothing.
-  std::vector<Edit> edits(const EditorContext& editor, const ViewportProjection& lens) const;
+  std::vector<Edit> edits(const ToolContext& editor, const ViewportProjection& lens) const;
   /// Amount of an edit as text, e.g. "Bend 12.5°".
   static std::string readout(const Edit& edit);
 

@@ -59,7 +59,7 @@ struct CageTool::Bound {
 CageTool::CageTool() = default;
 CageTool::~CageTool() = default;
 
-void CageTool::make(EditorContext& editor) {
+void CageTool::make(ToolContext& editor) {
   const std::vector<DeformTarget> targets = editor.deform_targets();
   if (targets.empty()) {
     editor.messages.fail("The scene has no visible object for a cage. Open a scene first.");
@@ -137,7 +137,7 @@ CageDeform CageTool::edit_for(const Points& points) const {
 
 // Records the cage's points as a step of the document's history: the first release as an edit, each later one as a
 // revision of the edit before.
-void CageTool::commit(EditorContext& editor) {
+void CageTool::commit(ToolContext& editor) {
   steps_.resize(at_ + 1);
   steps_.push_back(moved_);
   const CageDeform edit = edit_for(moved_);
@@ -158,7 +158,7 @@ void CageTool::commit(EditorContext& editor) {
 
 // Follows undo, redo and other edits. The cage is shown while the document's last edit is one of its releases, or while
 // the scene is the one in which it was made.
-void CageTool::follow(EditorContext& editor) {
+void CageTool::follow(ToolContext& editor) {
   if (!bound_ || !editor.at_rest()) return;
   hidden_ = false;
   if (editor.scene().roots == bound_->scene.roots) {
@@ -190,7 +190,7 @@ void CageTool::unbind() {
   dragging_ = selecting_region_ = hidden_ = false;
 }
 
-void CageTool::preview(EditorContext& editor) {
+void CageTool::preview(ToolContext& editor) {
   // The preview computes positions and rotations as the edit does. If that takes long, one with positions only is shown
   // first.
   const auto made = [bound = bound_, points = moved_, falloff = edit_.target.falloff](bool exact) {
@@ -231,7 +231,7 @@ std::vector<std::uint8_t> CageTool::in_front(const ViewportProjection& lens) con
 }
 
 // Front-facing points take precedence over back-facing ones.
-int CageTool::point_at(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const {
+int CageTool::point_at(const ToolContext& editor, const ViewportProjection& lens, const Vec2& at) const {
   const std::vector<std::uint8_t> front = in_front(lens);
   for (const std::uint8_t side : {1, 0}) {
     int found = -1;
@@ -246,7 +246,7 @@ int CageTool::point_at(const EditorContext& editor, const ViewportProjection& le
   return -1;
 }
 
-void CageTool::pick_inside(const EditorContext& editor, const ViewportProjection& lens) {
+void CageTool::pick_inside(const ToolContext& editor, const ViewportProjection& lens) {
   const std::vector<std::uint8_t> front = in_front(lens);
   const Vec2 low = from_.cwiseMin(to_), high = from_.cwiseMax(to_);
   for (std::size_t v = 0; v < moved_.size(); ++v) {
@@ -258,7 +258,7 @@ void CageTool::pick_inside(const EditorContext& editor, const ViewportProjection
   }
 }
 
-void CageTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+void CageTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (!dragging_) follow(editor);
   if (!shown()) return;
   if (pointer.pressed && pointer.inside) {
@@ -309,7 +309,7 @@ std::function<Vec3(const Vec3&)> CageTool::motion(const ViewportProjection& lens
   return [middle, turn](const Vec3& p) { return Vec3(middle + turn * (p - middle)); };
 }
 
-void CageTool::drag(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+void CageTool::drag(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   const std::function<Vec3(const Vec3&)> moves = motion(lens, pointer);
   Box box;
   for (const Vec3& p : bound_->cage.vertices) box.extend(p);
@@ -359,8 +359,8 @@ void CageTool::drag(EditorContext& editor, const ViewportProjection& lens, const
   if (moved_ != before_) commit(editor);
 }
 
-void CageTool::draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer,
-                    ImDrawList& list, const ImVec2& origin) const {
+void CageTool::draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+                    const ImVec2& origin) const {
   if (!shown()) return;
   constexpr ImU32 orange = IM_COL32(255, 140, 20, 255);
   if (selecting_region_ && region_is_lasso_) {
@@ -388,13 +388,13 @@ void CageTool::draw(const EditorContext& editor, const ViewportProjection& lens,
   }
 }
 
-void CageTool::add_guides(const EditorContext& /*editor*/, Guides& guides) const {
+void CageTool::add_guides(const ToolContext& /*editor*/, Guides& guides) const {
   if (!shown()) return;
   for (const auto& [a, b] : bound_->edges)
     guides.lines.push_back({moved_[a], moved_[b], Color(0.35, 0.65, 1), 0.9, 0.3});
 }
 
-void CageTool::options(EditorContext& editor) {
+void CageTool::options(ToolContext& editor) {
   int kind = wraps_ ? 1 : 0;
   if (ui::choice("kind", kind, {"Lattice", "Wrap"})) wraps_ = kind == 1;
   ui::flow(px(120));
@@ -440,11 +440,11 @@ void CageTool::options(EditorContext& editor) {
   ui::tip("Symmetry", "", "Mirrors the motion to the points on the other side of the cage's centre.");
   ui::flow(px(120));
   ui::toggle("Visible only##visible-only", editor.tools.visible_only());
-  ui::tip("Visible only", command_key("Visible only", editor), "Selects only points that face the camera.");
+  ui::tip("Visible only", command_key("Visible only", editor.settings), "Selects only points that face the camera.");
   ui::hint("Drag points to deform. Drag a box, or a lasso with Ctrl, to select.");
 }
 
-void CageTool::cancel(EditorContext& editor) {
+void CageTool::cancel(ToolContext& editor) {
   if (std::exchange(selecting_region_, false)) return;
   if (std::exchange(dragging_, false)) {
     moved_ = before_;
@@ -454,7 +454,7 @@ void CageTool::cancel(EditorContext& editor) {
   unbind();
 }
 
-void CageTool::leave(EditorContext& editor) {
+void CageTool::leave(ToolContext& editor) {
   cancel(editor);
   unbind();
 }

@@ -14,42 +14,42 @@ class CageTool final : public ViewTool {
  public:
   CageTool();
   ~CageTool() override;
-  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
-  void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+  void pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  void add_guides(const EditorContext& editor, Guides& guides) const override;
-  void options(EditorContext& editor) override;
+  void add_guides(const ToolContext& editor, Guides& guides) const override;
+  void options(ToolContext& editor) override;
   bool busy() const override { return dragging_ || selecting_region_; }
-  void cancel(EditorContext& editor) override;
-  void leave(EditorContext& editor) override;
+  void cancel(ToolContext& editor) override;
+  void leave(ToolContext& editor) override;
 
  private:
   struct Bound;
   using Points = std::vector<Vec3>;
   /// Builds a cage and binds the target to it, on the worker.
-  void make(EditorContext& editor);
+  void make(ToolContext& editor);
   /// The edit that moves the cage's points to `points`.
   CageDeform edit_for(const Points& points) const;
   /// Makes or revises the edit.
-  void commit(EditorContext& editor);
+  void commit(ToolContext& editor);
   /// Synchronises the cage with the document.
-  void follow(EditorContext& editor);
+  void follow(ToolContext& editor);
   /// Requests a preview.
-  void preview(EditorContext& editor);
+  void preview(ToolContext& editor);
   /// Moves the points in one frame of a drag.
-  void drag(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer);
+  void drag(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer);
   /// The drag's transform of selected points: maps a position at the start of the drag to the current one (world
   /// space).
   std::function<Vec3(const Vec3&)> motion(const ViewportProjection& lens, const Pointer& pointer) const;
   /// Selects the points in the box or lasso.
-  void pick_inside(const EditorContext& editor, const ViewportProjection& lens);
+  void pick_inside(const ToolContext& editor, const ViewportProjection& lens);
   /// Per cage point: 1 if its normal faces the eye.
   std::vector<std::uint8_t> in_front(const ViewportProjection& lens) const;
   /// Removes the cage; its edit stays.
   void unbind();
   bool shown() const { return bound_ && !hidden_; }
   /// Index of the cage point near a viewport pixel; −1 if there is none.
-  int point_at(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const;
+  int point_at(const ToolContext& editor, const ViewportProjection& lens, const Vec2& at) const;
 
   CageDeform edit_;     ///< options for the next cage
   bool wraps_ = false;  ///< the next cage is a wrap, not a lattice

@@ -74,7 +74,7 @@ std::vector<Vec2> Gizmo::plane_handle(const Target& target, const ViewportProjec
   return corners;
 }
 
-std::optional<Gizmo::Target> Gizmo::target(const EditorContext& editor, const ViewportProjection& lens) const {
+std::optional<Gizmo::Target> Gizmo::target(const ToolContext& editor, const ViewportProjection& lens) const {
   Target target;
   Box box;
   std::set<NodeId> picked;
@@ -191,7 +191,7 @@ Vec3 Gizmo::motion_in_plane(const ViewportProjection& lens, bool orthographic, c
   return at_.axes * along;
 }
 
-bool Gizmo::handles_alt_press(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const {
+bool Gizmo::handles_alt_press(const ToolContext& editor, const ViewportProjection& lens, const Vec2& at) const {
   if (kind_ != ToolKind::move) return false;
   const std::optional<Target> here = target(editor, lens);
   return here && !here->triangles && handle_at(*here, lens, at) != none;
@@ -233,14 +233,14 @@ std::vector<Edit> Gizmo::edits(const ViewportProjection& lens) const {
   return result;
 }
 
-void Gizmo::preview(EditorContext& editor, const std::vector<Edit>& made) {
+void Gizmo::preview(ToolContext& editor, const std::vector<Edit>& made) {
   if (made.empty())
     editor.drop_preview();
   else
     editor.show_preview(made);
 }
 
-std::optional<Vec3> Gizmo::surface(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const {
+std::optional<Vec3> Gizmo::surface(const ToolContext& editor, const ViewportProjection& lens, const Vec2& at) const {
   Scene others = editor.scene();
   for (const NodeId id : at_.nodes) others = with_changed(others, id, [](Node& node) { node.visible = false; });
   if (const std::optional<PickHit> picked = pick(others, lens, at, false)) return picked->world;
@@ -264,7 +264,7 @@ void Gizmo::begin(const Target& target, int handle, const Vec2& at) {
   typed_.clear();
 }
 
-void Gizmo::end(EditorContext& editor) {
+void Gizmo::end(ToolContext& editor) {
   held_ = none;
   constrained_ = entered_ = false;
   axis_presses_ = 0;
@@ -274,7 +274,7 @@ void Gizmo::end(EditorContext& editor) {
   if (before && editor.tools.kind == kind_) editor.tools.kind = *before;
 }
 
-void Gizmo::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+void Gizmo::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (held_ == none) {
     const bool by_key = std::exchange(editor.tools.pending_drag, std::nullopt).has_value();
     if (!by_key && (!pointer.pressed || !pointer.inside)) return;
@@ -329,7 +329,7 @@ void Gizmo::constrain(int axis, bool across) {
   constrained_ = true;
 }
 
-bool Gizmo::key(EditorContext& /*editor*/, const KeyPress& press) {
+bool Gizmo::key(ToolContext& /*editor*/, const KeyPress& press) {
   if (held_ == none || press.control || press.alt) return false;
   if (press.key >= GLFW_KEY_X && press.key <= GLFW_KEY_Z) {
     if (!press.repeated) constrain(press.key - GLFW_KEY_X, press.shift && kind_ == ToolKind::move);
@@ -344,7 +344,7 @@ bool Gizmo::key(EditorContext& /*editor*/, const KeyPress& press) {
   return typed_.key(press);
 }
 
-void Gizmo::draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+void Gizmo::draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
                  const ImVec2& origin) const {
   const std::optional<Target> here = held_ != none ? std::optional(at_) : target(editor, lens);
   if (!here) return;
@@ -392,14 +392,14 @@ void Gizmo::draw(const EditorContext& editor, const ViewportProjection& lens, co
   draw_label(list, on_screen(now_ + Vec2(16, 16), origin), text);
 }
 
-void Gizmo::options(EditorContext& editor) {
+void Gizmo::options(ToolContext& editor) {
   ui::toggle("Local axes", editor.tools.local_axes);
-  ui::tip("Local axes", command_key("Local axes", editor), "Aligns the handles with the object's local axes.");
+  ui::tip("Local axes", command_key("Local axes", editor.settings), "Aligns the handles with the object's local axes.");
   const ViewportProjection lens(editor.view.camera, editor.view.width, editor.view.height);
   if (kind_ == ToolKind::move) {
     ui::flow(px(140));
     ui::toggle("Snap to surface", editor.tools.snap_to_surface);
-    ui::tip("Snap to surface", command_key("Snap to surface", editor),
+    ui::tip("Snap to surface", command_key("Snap to surface", editor.settings),
             "Places a node that is dragged by its centre on the surface under the pointer, or on the ground plane.");
   }
   const std::optional<Target> here = target(editor, lens);
@@ -412,7 +412,7 @@ void Gizmo::options(EditorContext& editor) {
                          kind_ == ToolKind::move && !here->triangles ? ", Alt drags a copy" : ""));
 }
 
-void Gizmo::cancel(EditorContext& editor) {
+void Gizmo::cancel(ToolContext& editor) {
   end(editor);
   editor.drop_preview();
 }

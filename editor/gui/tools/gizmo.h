@@ -10,14 +10,14 @@ namespace rebake {
 class Gizmo final : public ViewTool {
  public:
   explicit Gizmo(ToolKind kind) : kind_(kind) {}
-  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
-  void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+  void pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  bool key(EditorContext& editor, const KeyPress& press) override;
-  void options(EditorContext& editor) override;
+  bool key(ToolContext& editor, const KeyPress& press) override;
+  void options(ToolContext& editor) override;
   bool busy() const override { return held_ != none; }
-  bool handles_alt_press(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const override;
-  void cancel(EditorContext& editor) override;
+  bool handles_alt_press(const ToolContext& editor, const ViewportProjection& lens, const Vec2& at) const override;
+  void cancel(ToolContext& editor) override;
 
  private:
   /// Handles: 0, 1, 2 are axes; plane + k is the plane normal to axis k. `all` moves in the view plane, rotates about
@@ -35,11 +35,11 @@ class Gizmo final : public ViewTool {
     Vec3 axis(int handle) const { return handle == all ? direction_to_eye : Vec3(axes.col(handle)); }
   };
   /// The current target; nothing without picked nodes or selected triangles.
-  std::optional<Target> target(const EditorContext& editor, const ViewportProjection& lens) const;
+  std::optional<Target> target(const ToolContext& editor, const ViewportProjection& lens) const;
   /// Starts a drag of a handle at a viewport pixel.
   void begin(const Target& target, int handle, const Vec2& at);
   /// Ends the drag, and returns to the previous tool if a key began it.
-  void end(EditorContext& editor);
+  void end(ToolContext& editor);
   /// Handles an axis key during a drag, as Blender does: constrains it to the world axis, then the local axis, then not
   /// at all. `across`: to the plane normal to the axis.
   void constrain(int axis, bool across);
@@ -57,8 +57,8 @@ class Gizmo final : public ViewTool {
   std::vector<Edit> edits(const ViewportProjection& lens) const;
   bool moves_in_plane() const { return held_ >= plane; }
   /// World position under a viewport pixel: on nodes that are not dragged, otherwise on the ground plane.
-  std::optional<Vec3> surface(const EditorContext& editor, const ViewportProjection& lens, const Vec2& at) const;
-  static void preview(EditorContext& editor, const std::vector<Edit>& made);
+  std::optional<Vec3> surface(const ToolContext& editor, const ViewportProjection& lens, const Vec2& at) const;
+  static void preview(ToolContext& editor, const std::vector<Edit>& made);
 
   ToolKind kind_;
   int held_ = none;                 ///< dragged handle

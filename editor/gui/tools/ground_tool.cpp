@@ -31,7 +31,7 @@ GroundEdit at_height(const Ground& ground, double height) {
 
 }  // namespace
 
-void GroundTool::add(EditorContext& editor, const Vec3& point) {
+void GroundTool::add(ToolContext& editor, const Vec3& point) {
   points_.push_back(point);
   if (points_.size() < 3) return;
   GroundEdit edit;
@@ -39,7 +39,7 @@ void GroundTool::add(EditorContext& editor, const Vec3& point) {
   editor.edit(edit);
 }
 
-void GroundTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+void GroundTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (!click_.ends(pointer)) return;
   auto picked = std::make_shared<std::optional<PickHit>>();
   editor.jobs.worker.start(
@@ -52,7 +52,7 @@ void GroundTool::pointer(EditorContext& editor, const ViewportProjection& lens, 
       });
 }
 
-void GroundTool::draw(const EditorContext& /*editor*/, const ViewportProjection& lens, const Pointer& /*pointer*/,
+void GroundTool::draw(const ToolContext& /*editor*/, const ViewportProjection& lens, const Pointer& /*pointer*/,
                       ImDrawList& list, const ImVec2& origin) const {
   const announce::Part part("ground");
   for (std::size_t k = 0; k < points_.size(); ++k) {
@@ -65,7 +65,7 @@ void GroundTool::draw(const EditorContext& /*editor*/, const ViewportProjection&
   }
 }
 
-void GroundTool::options(EditorContext& editor) {
+void GroundTool::options(ToolContext& editor) {
   const Ground& ground = editor.scene().ground;
   if (!dragging_) height_ = ground.height;
   const Box box = world_bounds(editor.scene());
@@ -105,7 +105,7 @@ void GroundTool::options(EditorContext& editor) {
                            : fmt::format("{} of 3 points set. Esc clears them.", points_.size()));
 }
 
-void GroundTool::cancel(EditorContext& editor) {
+void GroundTool::cancel(ToolContext& editor) {
   points_.clear();
   if (std::exchange(dragging_, false)) editor.drop_preview();
 }

@@ -8,15 +8,15 @@ namespace rebake {
 /// fitted to the selected triangles.
 class GroundTool final : public ViewTool {
  public:
-  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
-  void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+  void pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  void options(EditorContext& editor) override;
-  void cancel(EditorContext& editor) override;
+  void options(ToolContext& editor) override;
+  void cancel(ToolContext& editor) override;
 
  private:
   /// Adds a clicked point (world space); the third one makes the edit.
-  void add(EditorContext& editor, const Vec3& point);
+  void add(ToolContext& editor, const Vec3& point);
 
   std::vector<Vec3> points_;  ///< clicked so far, at most two; world space
   Click click_;

@@ -58,7 +58,7 @@ std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
   return edit;
 }
 
-void HandlesTool::begin(EditorContext& editor) {
+void HandlesTool::begin(ToolContext& editor) {
   end();
   const std::vector<DeformTarget> targets = editor.deform_targets();
   if (targets.empty()) return;
@@ -76,7 +76,7 @@ void HandlesTool::end() {
   at_ = 0;
 }
 
-void HandlesTool::add(EditorContext& editor, const ViewportProjection& lens, const Vec2& at, bool holds) {
+void HandlesTool::add(ToolContext& editor, const ViewportProjection& lens, const Vec2& at, bool holds) {
   if (!shown()) begin(editor);
   if (!from_) return;
   auto picked = std::make_shared<std::optional<PickHit>>();
@@ -108,7 +108,7 @@ void HandlesTool::add(EditorContext& editor, const ViewportProjection& lens, con
 
 // Follows undo, redo and other edits. Pins are shown while the document's last edit is one of their releases, or while
 // it has the scene in which they were set.
-void HandlesTool::follow(EditorContext& editor) {
+void HandlesTool::follow(ToolContext& editor) {
   if (!from_ || !editor.at_rest() || busy()) return;
   hidden_ = false;
   if (editor.scene().roots == from_->roots) {
@@ -128,14 +128,14 @@ void HandlesTool::follow(EditorContext& editor) {
   hidden_ = true;
 }
 
-void HandlesTool::show(EditorContext& editor) {
+void HandlesTool::show(ToolContext& editor) {
   std::vector<Edit> list;
   if (const auto wanted = edit_for(pins_)) list.emplace_back(*wanted);
   editor.show_preview(std::move(list), from_);
 }
 
 // Records the pins as a step of the document's history: the first release as an edit, each later one as a revision.
-void HandlesTool::commit(EditorContext& editor) {
+void HandlesTool::commit(ToolContext& editor) {
   steps_.resize(at_ + 1);
   steps_.push_back(pins_);
   const std::optional<HandlesDeform> wanted = edit_for(pins_);
@@ -168,7 +168,7 @@ int HandlesTool::pin_at(const ViewportProjection& lens, const Vec2& at) const {
   return found;
 }
 
-void HandlesTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+void HandlesTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   follow(editor);
   if (pointer.pressed && pointer.inside) {
     const int pin = pin_at(lens, pointer.at);
@@ -198,14 +198,14 @@ void HandlesTool::pointer(EditorContext& editor, const ViewportProjection& lens,
   if (pins_[k].moved != before_[k].moved) commit(editor);
 }
 
-void HandlesTool::remove_pin(EditorContext& editor, std::size_t pin) {
+void HandlesTool::remove_pin(ToolContext& editor, std::size_t pin) {
   pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(pin));
   if (at_ == 0) return;  // the document has no edit of the pins yet
   show(editor);
   commit(editor);
 }
 
-void HandlesTool::draw(const EditorContext& /*editor*/, const ViewportProjection& lens, const Pointer& pointer,
+void HandlesTool::draw(const ToolContext& /*editor*/, const ViewportProjection& lens, const Pointer& pointer,
                        ImDrawList& list, const ImVec2& origin) const {
   if (!shown()) return;
   const announce::Part part("handle");
@@ -229,13 +229,13 @@ void HandlesTool::draw(const EditorContext& /*editor*/, const ViewportProjection
   }
 }
 
-bool HandlesTool::key(EditorContext& editor, const KeyPress& press) {
+bool HandlesTool::key(ToolContext& editor, const KeyPress& press) {
   if (press.key != GLFW_KEY_BACKSPACE || pins_.empty() || !shown() || busy()) return false;
   if (editor.at_rest()) remove_pin(editor, pins_.size() - 1);
   return true;
 }
 
-void HandlesTool::options(EditorContext& editor) {
+void HandlesTool::options(ToolContext& editor) {
   int kind = holds_ ? 0 : 1;
   if (ui::choice("kind", kind, {"Fix##fix", "Drag##drag"})) holds_ = kind == 0;
   ui::tip("Handle type", "", "A click sets a fixed handle or one to drag. Shift sets the other type.");
@@ -257,7 +257,7 @@ void HandlesTool::options(EditorContext& editor) {
           : "Drag a handle to deform. Ctrl+click removes it.");
 }
 
-void HandlesTool::cancel(EditorContext& editor) {
+void HandlesTool::cancel(ToolContext& editor) {
   if (held_ >= 0) {
     held_ = -1;
     pins_ = before_;
@@ -267,7 +267,7 @@ void HandlesTool::cancel(EditorContext& editor) {
   end();
 }
 
-void HandlesTool::leave(EditorContext& editor) {
+void HandlesTool::leave(ToolContext& editor) {
   cancel(editor);
   cancel(editor);
 }

@@ -9,14 +9,14 @@ namespace rebake {
 /// document's history: the first an edit, each later one a revision of it (Document::revise).
 class HandlesTool final : public ViewTool {
  public:
-  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
-  void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+  void pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
             const ImVec2& origin) const override;
-  bool key(EditorContext& editor, const KeyPress& press) override;
-  void options(EditorContext& editor) override;
+  bool key(ToolContext& editor, const KeyPress& press) override;
+  void options(ToolContext& editor) override;
   bool busy() const override { return held_ >= 0; }
-  void cancel(EditorContext& editor) override;
-  void leave(EditorContext& editor) override;
+  void cancel(ToolContext& editor) override;
+  void leave(ToolContext& editor) override;
 
  private:
   struct Pin {
@@ -29,16 +29,16 @@ class HandlesTool final : public ViewTool {
   /// The edit of these pins; nothing if none has moved.
   std::optional<HandlesDeform> edit_for(const Pins& pins) const;
   /// Starts a new set of pins on the current scene.
-  void begin(EditorContext& editor);
+  void begin(ToolContext& editor);
   /// Adds a pin on the surface at a viewport pixel, if the target is there. Runs on the worker.
-  void add(EditorContext& editor, const ViewportProjection& lens, const Vec2& at, bool holds);
+  void add(ToolContext& editor, const ViewportProjection& lens, const Vec2& at, bool holds);
   /// Synchronises the pins with the document.
-  void follow(EditorContext& editor);
+  void follow(ToolContext& editor);
   /// Requests a preview.
-  void show(EditorContext& editor);
+  void show(ToolContext& editor);
   /// Makes or revises the edit.
-  void commit(EditorContext& editor);
-  void remove_pin(EditorContext& editor, std::size_t pin);
+  void commit(ToolContext& editor);
+  void remove_pin(ToolContext& editor, std::size_t pin);
   /// Removes all pins; their edit stays.
   void end();
   bool shown() const { return from_ && !hidden_; }

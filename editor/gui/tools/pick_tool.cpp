@@ -11,7 +11,7 @@ namespace rebake {
 
 namespace {
 
-void take(EditorContext& editor, const std::optional<PickHit>& picked, const Pointer& pointer, bool floods) {
+void take(ToolContext& editor, const std::optional<PickHit>& picked, const Pointer& pointer, bool floods) {
   if (floods) {
     if (!picked) return;
     std::set<NodeId> touched;
@@ -40,7 +40,7 @@ void take(EditorContext& editor, const std::optional<PickHit>& picked, const Poi
 
 }  // namespace
 
-void PickTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+void PickTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (!click_.ends(pointer)) return;
   // On the worker's thread, since the first ray into an object builds its ray tree.
   auto picked = std::make_shared<std::optional<PickHit>>();
@@ -49,7 +49,7 @@ void PickTool::pointer(EditorContext& editor, const ViewportProjection& lens, co
       [&editor, picked, pointer, floods = floods_] { take(editor, *picked, pointer, floods); });
 }
 
-void PickTool::options(EditorContext& editor) {
+void PickTool::options(ToolContext& editor) {
   if (!floods_) {
     ui::hint("Click a node to pick it, drag to orbit. Shift adds, Ctrl removes.");
     return;

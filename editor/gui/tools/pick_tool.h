@@ -8,12 +8,11 @@ namespace rebake {
 class PickTool final : public ViewTool {
  public:
   explicit PickTool(bool floods) : floods_(floods) {}
-  void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
-  void draw(const EditorContext&, const ViewportProjection&, const Pointer&, ImDrawList&,
-            const ImVec2&) const override {}
+  void pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) override;
+  void draw(const ToolContext&, const ViewportProjection&, const Pointer&, ImDrawList&, const ImVec2&) const override {}
   bool needs_current_scene() const override { return false; }
-  void options(EditorContext& editor) override;
-  void cancel(EditorContext&) override {}
+  void options(ToolContext& editor) override;
+  void cancel(ToolContext&) override {}
 
  private:
   bool floods_;

@@ -17,7 +17,7 @@ namespace {
 constexpr double min_step = 2;        // minimum distance between points of a freehand line, pixels
 constexpr double closing_reach = 10;  // a click this near to a polygon's first corner closes it, pixels
 
-PictureFields picture_of(const EditorContext& editor) {
+PictureFields picture_of(const ToolContext& editor) {
   PictureFields picture;
   picture.camera = editor.view.camera;
   picture.size = {editor.view.width, editor.view.height};
@@ -26,7 +26,7 @@ PictureFields picture_of(const EditorContext& editor) {
 
 }  // namespace
 
-void RegionTool::pointer(EditorContext& editor, const ViewportProjection& /*lens*/, const Pointer& pointer) {
+void RegionTool::pointer(ToolContext& editor, const ViewportProjection& /*lens*/, const Pointer& pointer) {
   if (pointer.pressed && pointer.inside && points_.empty()) mode_ = select_mode(pointer);
   if (kind_ == ToolKind::polygon) {
     if (!pointer.pressed || !pointer.inside) return;
@@ -48,7 +48,7 @@ void RegionTool::pointer(EditorContext& editor, const ViewportProjection& /*lens
   if (pointer.released) finish(editor);
 }
 
-void RegionTool::finish(EditorContext& editor) {
+void RegionTool::finish(ToolContext& editor) {
   const std::vector<Vec2> points = std::exchange(points_, {});
   PictureFields picture = picture_of(editor);
   if (paints()) {
@@ -75,7 +75,7 @@ void RegionTool::finish(EditorContext& editor) {
   editor.edit_scope(select);
 }
 
-void RegionTool::draw(const EditorContext& editor, const ViewportProjection& /*lens*/, const Pointer& pointer,
+void RegionTool::draw(const ToolContext& editor, const ViewportProjection& /*lens*/, const Pointer& pointer,
                       ImDrawList& list, const ImVec2& origin) const {
   constexpr ImU32 light = IM_COL32(255, 255, 255, 230), dark = IM_COL32(0, 0, 0, 160);
   if (paints()) {
@@ -101,15 +101,15 @@ void RegionTool::draw(const EditorContext& editor, const ViewportProjection& /*l
   list.AddPolyline(line.data(), static_cast<int>(line.size()), light, ImDrawFlags_Closed, 1);
 }
 
-bool RegionTool::key(EditorContext& editor, const KeyPress& press) {
+bool RegionTool::key(ToolContext& editor, const KeyPress& press) {
   if (kind_ != ToolKind::polygon || points_.size() < 3 || press.key != GLFW_KEY_ENTER) return false;
   finish(editor);
   return true;
 }
 
-void RegionTool::options(EditorContext& editor) {
+void RegionTool::options(ToolContext& editor) {
   ui::toggle("Visible only##visible-only", editor.tools.visible_only());
-  ui::tip("Visible only", command_key("Visible only", editor),
+  ui::tip("Visible only", command_key("Visible only", editor.settings),
           "Selects only visible triangles. Off: also those behind them.");
   if (paints()) {
     auto radius = static_cast<float>(editor.settings.brush_radius);
@@ -127,6 +127,6 @@ void RegionTool::options(EditorContext& editor) {
                                         : "Shift adds, Ctrl removes, both intersect.");
 }
 
-void RegionTool::cancel(EditorContext& /*editor*/) { points_.clear(); }
+void RegionTool::cancel(ToolContext& /*editor*/) { points_.clear(); }
 
 }  // namespace rebake

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "editor/gui/platform/window.h"
-#include "editor/gui/state/editor_context.h"
+#include "editor/gui/state/tool_context.h"
 #include "editor/gui/ui/style.h"
 #include "editor/gui/view/viewport_projection.h"
 
@@ -48,29 +48,29 @@ class ViewTool {
  public:
   virtual ~ViewTool() = default;
   /// Handles the pointer in one frame.
-  virtual void pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) = 0;
+  virtual void pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) = 0;
   /// Draws 2D handles over the viewport, whose top left corner is at `origin` (window pixels).
-  virtual void draw(const EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer,
-                    ImDrawList& list, const ImVec2& origin) const = 0;
+  virtual void draw(const ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer, ImDrawList& list,
+                    const ImVec2& origin) const = 0;
   /// Adds lines and triangles in world space.
-  virtual void add_guides(const EditorContext& /*editor*/, Guides& /*guides*/) const {}
+  virtual void add_guides(const ToolContext& /*editor*/, Guides& /*guides*/) const {}
   /// Handles a key press before commands see it; returns true if the tool used it.
-  virtual bool key(EditorContext& /*editor*/, const KeyPress& /*press*/) { return false; }
+  virtual bool key(ToolContext& /*editor*/, const KeyPress& /*press*/) { return false; }
   /// Draws the tool's options and help into the tool bar.
-  virtual void options(EditorContext& editor) = 0;
+  virtual void options(ToolContext& editor) = 0;
   /// Whether pointer() needs the current scene. If so, it is not called while the worker is busy, except during a drag.
   virtual bool needs_current_scene() const { return true; }
   /// Whether a press with Alt at this pixel is for the tool; otherwise it orbits the view.
-  virtual bool handles_alt_press(const EditorContext& /*editor*/, const ViewportProjection& /*lens*/,
+  virtual bool handles_alt_press(const ToolContext& /*editor*/, const ViewportProjection& /*lens*/,
                                  const Vec2& /*at*/) const {
     return false;
   }
   /// Whether a drag or an unfinished shape is in progress, which Escape cancels.
   virtual bool busy() const { return false; }
   /// Cancels the drag or shape in progress; without one, resets the tool. Edits stay.
-  virtual void cancel(EditorContext& editor) = 0;
+  virtual void cancel(ToolContext& editor) = 0;
   /// Called when another tool becomes active. Edits stay.
-  virtual void leave(EditorContext& editor) { cancel(editor); }
+  virtual void leave(ToolContext& editor) { cancel(editor); }
 };
 
 /// All tools by kind; the table is in tools.cpp. Tools own no GPU objects.

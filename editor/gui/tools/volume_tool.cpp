@@ -25,7 +25,7 @@ Vec3 outwards(int side) {
 
 }  // namespace
 
-void VolumeTool::place(const EditorContext& editor) {
+void VolumeTool::place(const ToolContext& editor) {
   const Box box = editor.focus();
   if (box.isEmpty()) return;
   volume_.center = box.center();
@@ -49,7 +49,7 @@ int VolumeTool::handle_at(const ViewportProjection& lens, const Vec2& at) const 
   return found;
 }
 
-void VolumeTool::pointer(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
+void VolumeTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (volume_.half.isZero(0)) place(editor);
   if (volume_.half.isZero(0)) return;
   if (held_ == none) {
@@ -86,7 +86,7 @@ void VolumeTool::pointer(EditorContext& editor, const ViewportProjection& lens, 
   if (pointer.released) held_ = none;
 }
 
-void VolumeTool::select(EditorContext& editor, SelectMode mode) const {
+void VolumeTool::select(ToolContext& editor, SelectMode mode) const {
   Select edit;
   edit.mode = mode;
   if (sphere_)
@@ -96,13 +96,13 @@ void VolumeTool::select(EditorContext& editor, SelectMode mode) const {
   editor.edit_scope(edit);
 }
 
-bool VolumeTool::key(EditorContext& editor, const KeyPress& press) {
+bool VolumeTool::key(ToolContext& editor, const KeyPress& press) {
   if (busy() || (press.key != GLFW_KEY_ENTER && press.key != GLFW_KEY_KP_ENTER) || volume_.half.isZero(0)) return false;
   select(editor, press.shift ? SelectMode::add : press.control ? SelectMode::remove : SelectMode::set);
   return true;
 }
 
-void VolumeTool::draw(const EditorContext& /*editor*/, const ViewportProjection& lens, const Pointer& pointer,
+void VolumeTool::draw(const ToolContext& /*editor*/, const ViewportProjection& lens, const Pointer& pointer,
                       ImDrawList& list, const ImVec2& origin) const {
   if (volume_.half.isZero(0)) return;
   const int hot = held_ != none ? held_ : pointer.inside ? handle_at(lens, pointer.at) : none;
@@ -118,7 +118,7 @@ void VolumeTool::draw(const EditorContext& /*editor*/, const ViewportProjection&
   }
 }
 
-void VolumeTool::add_guides(const EditorContext& /*editor*/, Guides& guides) const {
+void VolumeTool::add_guides(const ToolContext& /*editor*/, Guides& guides) const {
   if (volume_.half.isZero(0)) return;
   const Color color(0.35, 0.65, 1);
   const auto line = [&](const Vec3& a, const Vec3& b) {
@@ -142,7 +142,7 @@ void VolumeTool::add_guides(const EditorContext& /*editor*/, Guides& guides) con
   }
 }
 
-void VolumeTool::options(EditorContext& editor) {
+void VolumeTool::options(ToolContext& editor) {
   int shape = sphere_ ? 1 : 0;
   if (ui::choice("shape", shape, {"Box##box", "Sphere##sphere"})) {
     sphere_ = shape == 1;
@@ -165,7 +165,7 @@ void VolumeTool::options(EditorContext& editor) {
   ui::hint("Drag the centre to move the volume, or the sides to resize it.");
 }
 
-void VolumeTool::cancel(EditorContext& /*editor*/) {
+void VolumeTool::cancel(ToolContext& /*editor*/) {
   if (std::exchange(held_, none) != none) volume_ = before_;
 }
 

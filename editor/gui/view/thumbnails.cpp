@@ -75,7 +75,7 @@ void Thumbnails::keep(const std::string& path, const std::vector<std::string>& r
   for (const std::string& one : recent) wanted.insert(picture_file(one));
   for (const fs::directory_entry& entry : fs::directory_iterator(file.parent_path()))
     if (!wanted.contains(entry.path())) fs::remove(entry.path());
-  write_png(thumbnail_of(seen, width, height), file, {});
+  write_picture(thumbnail_of(seen, width, height), file, {});
   files_.erase(file);
 }
 

@@ -53,11 +53,10 @@ bool has_end_marker(std::string_view bytes) {
 const PictureCodecs& picture_codecs(const std::filesystem::path& picture) {
   static const ModuleSymbol found = module_symbol("librebake_pictures.so", picture_codecs_symbol);
   if (found.symbol == nullptr)
-    throw FileError(picture,
-                    "cannot be read: " + (found.problem.empty()
-                                              ? "librebake_pictures.so, which reads such images, is neither beside "
-                                                "Rebake nor in lib/rebake; build or install Rebake again"
-                                              : found.problem));
+    throw FileError(picture, found.problem.empty()
+                                 ? "needs librebake_pictures.so, which is neither beside Rebake nor in lib/rebake; "
+                                   "build or install Rebake again"
+                                 : "needs OpenImageIO: " + found.problem);
   static const PictureCodecs* const codecs = reinterpret_cast<PictureCodecsFactory>(found.symbol)();
   return *codecs;
 }

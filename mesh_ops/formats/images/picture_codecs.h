@@ -5,9 +5,10 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
-// Decoding of general image files by OpenImageIO. It is in a separate module, loaded when the first such image is read:
-// its 250 libraries take ten times as long to load as the rest of the program.
+// Decoding and encoding of general image files by OpenImageIO. It is in a separate module, loaded for the first such
+// image: its 250 libraries take ten times as long to load as the rest of the program.
 
 namespace rebake {
 
@@ -21,6 +22,13 @@ struct PictureLayout {
   std::string type;         ///< data type of a channel, such as "uint8"
   std::string color_space;  ///< colour space according to the file or its format; may be empty
   int rows_at_once = 1;     ///< height of a tile, or 1: read() needs multiples of this
+};
+
+/// A decoded WebP image.
+struct WebpImage {
+  int width = 0, height = 0;
+  bool lossless = false;             ///< whether it was compressed without loss
+  std::vector<std::uint8_t> rgba{};  ///< row by row from the top
 };
 
 /// Reads the rows of an open image file.
@@ -52,11 +60,21 @@ class PictureCodecs {
   PictureCodecs(const PictureCodecs&) = delete;
   PictureCodecs& operator=(const PictureCodecs&) = delete;
 
-  /// Opens an image file of any known format. Colours are not premultiplied by alpha unless the format stores them so.
+  /// Opens an image file of any known format. Colours are not premultiplied by alpha unless the format stores them so,
+  /// or the file is a WebP.
   virtual std::unique_ptr<PictureReader> open(const std::filesystem::path& path, std::string& error) const = 0;
   /// Opens a PNG in memory; `bytes` must outlive the reader. `name` is for messages.
   virtual std::unique_ptr<PictureReader> open_png(std::string_view bytes, const std::string& name,
                                                   std::string& error) const = 0;
+  /// Decodes a WebP in memory as RGBA with the colours as stored, which OpenImageIO would multiply by alpha.
+  virtual bool decode_webp(std::string_view bytes, WebpImage& image, std::string& error) const = 0;
+  /// Encodes an RGB image, interleaved, row 0 at the top, in a format of OpenImageIO ("jpeg", "openexr"): 8-bit display
+  /// colours without loss except by JPEG (quality 95, no subsampling), or linear light as half floats. Returns false
+  /// and sets `error` if that fails.
+  virtual bool encode(const std::string& format, int width, int height, const std::uint8_t* pixels, std::string& bytes,
+                      std::string& error) const = 0;
+  virtual bool encode(const std::string& format, int width, int height, const float* pixels, std::string& bytes,
+                      std::string& error) const = 0;
 
  protected:
   PictureCodecs() = default;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string_view>
 
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/formats/mobilenerf/baked_folder.h"
+#include "mesh_ops/formats/mobilenerf/baked_layout.h"
+#include "mesh_ops/formats/mobilenerf/json_text.h"
 
 namespace rebake {
 
@@ -40,7 +42,7 @@ bool is_baked_file_name(const std::string& name) {
 }
 
 bool has_baked_decoder(const fs::path& folder) {
-  const json mlp = json::parse(read_file(folder / "mlp.json"), nullptr, false);
+  const json mlp = json::parse(without_trailing_commas(read_file(folder / "mlp.json")).text, nullptr, false);
   return mlp.is_object() && mlp.contains("0_weights");
 }
 
@@ -53,19 +55,17 @@ std::vector<fs::path> baked_files(const fs::path& folder) {
   };
   if (!add("mlp.json")) return files;
   for (const std::string_view name : sidecar_names) add(std::string(name));
-  const json mlp = json::parse(read_file(folder / "mlp.json"), nullptr, false);
-  const bool unsplit = !mlp.is_object() || !mlp.contains("obj_num");
-  // All sets that reading would find, whatever mlp.json says.
-  const std::size_t said = !unsplit && mlp.at("obj_num").is_number() && mlp.at("obj_num") > 0
-                               ? static_cast<std::size_t>(std::min(mlp.at("obj_num").get<double>(), 1e6))
-                               : 1;
-  const std::size_t sets = unsplit ? 1 : count_texture_sets(folder, said);
-  const Layout naming = unsplit ? Layout::unsplit : Layout::split;
-  for (std::size_t set = 0; set < sets; ++set) {
-    add(geometry_name(naming, set, 0));
-    if (!unsplit)
-      for (std::size_t chunk = 0; add(geometry_name(Layout::chunked, set, chunk));) ++chunk;
-    for (const int image : {0, 1}) add(feature_name(naming, set, image));
+  const std::string text = read_file(folder / "mlp.json");
+  const json mlp = json::parse(without_trailing_commas(text).text, nullptr, false);
+  std::optional<int> obj_num;
+  if (mlp.is_object() && mlp.contains("obj_num"))
+    obj_num = mlp.at("obj_num").is_number() && mlp.at("obj_num") > 0
+                  ? static_cast<int>(std::min(mlp.at("obj_num").get<double>(), 1e6))
+                  : 1;
+  for (const BakedLayout::Set& set : find_baked_layout(folder, obj_num).sets) {
+    files.insert(files.end(), set.geometry.begin(), set.geometry.end());
+    for (const std::string& texture : set.textures)
+      if (!texture.empty()) files.emplace_back(texture);
   }
   return files;
 }

@@ -13,7 +13,7 @@ bool is_baked_file_name(const std::string& name);
 bool has_baked_decoder(const std::filesystem::path& folder);
 
 /// The files that read_baked_folder() reads, relative to the folder; empty without mlp.json. Throws FileError as
-/// count_texture_sets().
+/// find_baked_layout().
 std::vector<std::filesystem::path> baked_files(const std::filesystem::path& folder);
 
 }  // namespace rebake

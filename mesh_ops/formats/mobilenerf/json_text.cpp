@@ -49,6 +49,24 @@ std::size_t end_of_value(std::string_view text, std::size_t at) {
 
 }  // namespace
 
+TrimmedJson without_trailing_commas(std::string_view text) {
+  TrimmedJson trimmed{std::string(text), 0, 0};
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (text[at] == '"') {
+      at = end_of_string(text, at) - 1;
+      continue;
+    }
+    if (text[at] != ',') continue;
+    const std::size_t next = skip_space(text, at + 1);
+    if (next == text.size() || (text[next] != ']' && text[next] != '}')) continue;
+    trimmed.text[at] = ' ';
+    if (trimmed.commas++ == 0)
+      trimmed.first_line =
+          1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+  }
+  return trimmed;
+}
+
 std::map<std::string, std::string> json_members(std::string_view text) {
   std::map<std::string, std::string> members;
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";

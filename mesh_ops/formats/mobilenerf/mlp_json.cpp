@@ -131,9 +131,16 @@ json list_of(const Eigen::VectorXd& vector) {
 }  // namespace
 
 MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) {
+  MlpFile file;
+  const TrimmedJson trimmed = without_trailing_commas(text);
+  if (trimmed.commas > 0) {
+    file.assumptions.push_back(fmt::format("{}: {} commas after last elements are skipped; the first in line {}",
+                                           name.filename().string(), trimmed.commas, trimmed.first_line));
+    file.needs_repair = true;
+    text = trimmed.text;
+  }
   const json root = parsed(text, name);
   if (!root.is_object()) throw FileError(name, "must contain a JSON object");
-  MlpFile file;
   Decoder& d = file.decoder;
   d.bias0 = read_bias(root, "0_bias", name);
   d.bias1 = read_bias(root, "1_bias", name);

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/mesh/polygon.h"
 
 namespace rebake {
 
@@ -62,15 +65,47 @@ class Parser {
     if (key == "v") {
       const double x = number(), y = number(), z = number();
       positions_.emplace_back(x, y, z);
+      skip_blanks();
+      if (at_ != line_end_ && *at_ != '#') note(Note::colors);
     } else if (key == "vt") {
       const double u = number(), v = number();
       uvs_.emplace_back(u, v);
     } else if (key == "f") {
       face();
     } else if (key == "l" || key == "p") {
-      fail("lines and points have no texels; only faces can be read");
+      note(Note::lines);
+    } else {
+      constexpr std::array<std::string_view, 8> known{"o", "g", "s", "vn", "usemtl", "mtllib", "vp", "mg"};
+      const bool is_known = std::find(known.begin(), known.end(), key) != known.end();
+      if (!is_known) unknown_ = std::string(key.substr(0, 20));
+      note(is_known ? Note::groups : Note::unknown);
     }
-    // Normals, groups, materials and other statements have no meaning in this format.
+  }
+
+  // Kinds of skipped or decided things; each is reported with its first line and its count.
+  enum class Note { groups, unknown, colors, lines, concave, crossing };
+  struct Noted {
+    std::size_t first_line = 0, count = 0;
+  };
+  void note(Note kind, std::size_t line = 0) {
+    Noted& noted = notes_[static_cast<std::size_t>(kind)];
+    if (noted.count++ == 0) noted.first_line = line > 0 ? line : line_;
+  }
+
+  std::vector<std::string> assumptions() const {
+    const std::array<std::string, 6> texts{
+        "objects, groups, materials and normals are skipped; all faces are one mesh",
+        fmt::format("unknown statements such as \"{}\" are skipped", printable_word(unknown_)),
+        "numbers after x y z (vertex colours or weights) are skipped",
+        "lines and points are skipped",
+        "concave polygons are cut by clipping ears",
+        "polygons whose sides cross or that have no area are cut as a fan"};
+    std::vector<std::string> found;
+    for (std::size_t kind = 0; kind < texts.size(); ++kind)
+      if (notes_[kind].count > 0)
+        found.push_back(
+            fmt::format("line {}: {} ({} in total)", notes_[kind].first_line, texts[kind], notes_[kind].count));
+    return found;
   }
 
   double number() {
@@ -91,8 +126,11 @@ class Parser {
   std::string word_at(const char* from) const {
     const char* stop = from;
     while (stop != line_end_ && *stop != ' ' && *stop != '\t' && stop - from < 40) ++stop;
-    std::string word(from, stop);
-    // Control characters of binary files must not garble the terminal.
+    return printable_word({from, stop});
+  }
+
+  // Control characters of binary files must not garble the terminal.
+  static std::string printable_word(std::string word) {
     std::replace_if(
         word.begin(), word.end(), [](unsigned char c) { return c < 32 || c > 126; }, '?');
     return word;
@@ -110,8 +148,7 @@ class Parser {
   }
 
   void face() {
-    Corner polygon[3] = {};
-    int corner_count = 0;
+    const std::size_t first = corners_.size();
     for (skip_blanks(); at_ != line_end_ && *at_ != '#'; skip_blanks()) {
       Corner corner{};
       corner.position = index(positions_.size(), "vertex");
@@ -125,22 +162,41 @@ class Parser {
       }
       if (at_ != line_end_ && *at_ != ' ' && *at_ != '\t')
         fail(fmt::format("\"{}\" does not belong in a face", word_at(at_)));
-      if (corner_count < 3) {
-        polygon[corner_count] = corner;
-      } else {
-        polygon[1] = polygon[2];
-        polygon[2] = corner;
-      }
-      ++corner_count;
-      if (corner_count >= 3)
-        for (const Corner& c : polygon) {
-          corners_.push_back(c);
-          highest_index_ = std::max(highest_index_, std::max(c.position, c.uv));
-        }
+      corners_.push_back(corner);
+      highest_index_ = std::max(highest_index_, std::max(corner.position, corner.uv));
     }
-    if (corner_count < 3) fail("a face needs at least three corners");
+    const std::size_t count = corners_.size() - first;
+    if (count < 3) fail("a face needs at least three corners");
+    only_triangles_ = only_triangles_ && count == 3;
     face_lines_.push_back(line_);
     face_ends_.push_back(corners_.size());
+  }
+
+  CutPolygon cut_face(const std::vector<Vec3>& corners, std::size_t line) const {
+    try {
+      return cut_polygon(corners);
+    } catch (const Error& error) {
+      throw FileError(name_, fmt::format("line {}: {}", line, error.what()));
+    }
+  }
+
+  // Cuts all polygons into triangles.
+  void cut_polygons() {
+    std::vector<Corner> cut;
+    cut.reserve(corners_.size());
+    std::size_t first = 0;
+    std::vector<Vec3> places;
+    for (std::size_t f = 0; f < face_ends_.size(); ++f) {
+      places.clear();
+      for (std::size_t c = first; c < face_ends_[f]; ++c) places.push_back(positions_[corners_[c].position]);
+      const CutPolygon polygon = cut_face(places, face_lines_[f]);
+      if (polygon.shape == PolygonShape::concave) note(Note::concave, face_lines_[f]);
+      if (polygon.shape == PolygonShape::crossing) note(Note::crossing, face_lines_[f]);
+      for (const auto& triangle : polygon.triangles)
+        for (const std::size_t corner : triangle) cut.push_back(corners_[first + corner]);
+      first = face_ends_[f];
+    }
+    corners_ = std::move(cut);
   }
 
   [[noreturn]] void fail_range() const {
@@ -162,7 +218,11 @@ class Parser {
       if (std::any_of(corners_.begin(), corners_.end(),
                       [&](const Corner& c) { return c.position >= positions_.size() || c.uv >= uvs_.size(); }))
         fail_range();
+    if (!only_triangles_) cut_polygons();
     ObjMesh mesh;
+    mesh.assumptions = assumptions();
+    mesh.needs_repair = notes_[static_cast<std::size_t>(Note::lines)].count > 0 ||
+                        notes_[static_cast<std::size_t>(Note::concave)].count > 0;
     mesh.faces.resize(corners_.size() / 3);
     const bool paired =
         positions_.size() == uvs_.size() &&
@@ -198,7 +258,10 @@ class Parser {
   std::vector<Corner> corners_;
   std::uint32_t highest_index_ = 0;
   std::vector<std::size_t> face_lines_;  // line of each face, for messages
-  std::vector<std::size_t> face_ends_;   // end of each face in corners_
+  std::vector<std::size_t> face_ends_;   // end of each face in corners_, before polygons are cut
+  bool only_triangles_ = true;
+  std::array<Noted, 6> notes_{};  // per Note
+  std::string unknown_;           // the last unknown statement
 };
 
 void append(std::string& out, double value) {
@@ -217,7 +280,41 @@ void append(std::string& out, std::uint32_t value) {
 
 }  // namespace
 
-ObjMesh read_obj(std::string_view text, const std::filesystem::path& name) { return Parser(text, name).run(); }
+namespace {
+
+// The text with continued lines joined. Empty lines keep the line numbers of what follows.
+std::string with_joined_lines(std::string_view text) {
+  std::string joined;
+  std::size_t missing = 0;
+  bool comment = false, begins = true;  // the line is a comment; nothing but blanks has come in it
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (begins && text[at] != ' ' && text[at] != '\t') comment = text[at] == '#', begins = false;
+    if (text[at] == '\n') begins = true;
+    if (comment) {
+      joined += text[at];
+      if (text[at] == '\n') comment = false;
+      continue;
+    }
+    const bool carriage = text.substr(at, 3) == "\\\r\n";
+    if (carriage || text.substr(at, 2) == "\\\n") {
+      joined += ' ';
+      at += carriage ? 2 : 1;
+      ++missing;
+    } else {
+      joined += text[at];
+      if (text[at] == '\n') joined.append(std::exchange(missing, 0), '\n');
+    }
+  }
+  return joined;
+}
+
+}  // namespace
+
+ObjMesh read_obj(std::string_view text, const std::filesystem::path& name) {
+  if (text.find("\\\n") == std::string_view::npos && text.find("\\\r\n") == std::string_view::npos)
+    return Parser(text, name).run();
+  return Parser(with_joined_lines(text), name).run();
+}
 
 std::string write_obj(const std::vector<Vec3>& positions, const std::vector<Vec2>& uvs, const std::vector<Face>& faces,
                       std::size_t first_face, std::size_t last_face) {

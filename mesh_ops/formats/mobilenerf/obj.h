@@ -14,12 +14,15 @@ struct ObjMesh {
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;  ///< v points up
   std::vector<Face> faces;
+  std::vector<std::string> assumptions = {};  ///< skipped parts and decisions, with the first line of each kind
+  bool needs_repair = false;                  ///< viewers would draw the file otherwise; exports must not copy it
 };
 
-/// Reads the subset of OBJ that MobileNeRF uses: v, vt, f with texture coordinates. Polygons become triangle fans,
-/// negative indices count back from the last vertex, and positions with several UVs are duplicated. `name` is for
-/// messages. Throws FileError with the line for indices out of range, numbers that are not finite, and truncated
-/// statements.
+/// Reads v, vt and f with texture coordinates; all objects and groups are one mesh. Polygons become triangles
+/// (cut_polygon), negative indices count back from the last vertex, positions with several UVs are duplicated, and a
+/// backslash at the end of a line continues it. Lines, points, normals, materials, vertex colours and weights are
+/// skipped. `name` is for messages. Throws FileError with the line for indices out of range, numbers that are not
+/// finite, and truncated statements.
 ObjMesh read_obj(std::string_view text, const std::filesystem::path& name);
 
 /// Writes faces [first_face, last_face) with the vertices they use. Numbers that six decimals represent exactly get six

@@ -14,6 +14,7 @@
 #include "mesh_ops/features/atlas/atlas.h"
 #include "mesh_ops/formats/mobilenerf/baked_folder.h"
 #include "mesh_ops/formats/mobilenerf/baked_positions_file.h"
+#include "mesh_ops/formats/mobilenerf/dialect.h"
 #include "mesh_ops/formats/mobilenerf/feature_png.h"
 #include "mesh_ops/formats/mobilenerf/mlp_json.h"
 #include "mesh_ops/formats/mobilenerf/obj.h"
@@ -96,7 +97,7 @@ struct Fitted {
 };
 Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::optional<int> page_side,
               std::vector<std::string>& notes) {
-  const AlphaCode code = layout == Layout::unsplit ? AlphaCode::plain : AlphaCode::halved;
+  const AlphaCode code = alpha_code_of(layout, object.dialect);
   const BakedObject* const objects[] = {&object};
   const int largest = page_side.value_or(largest_page_side(layout, objects));
   const auto is_too_large = [&](const TextureSet& set) {
@@ -217,6 +218,11 @@ int largest_page_side(Layout layout, std::span<const BakedObject* const> objects
   return side;
 }
 
+BakedObject published(BakedObject object) {
+  object.dialect = {};
+  return object;
+}
+
 void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedObject& object, Layout layout,
                         std::vector<std::string>& notes, const Progress& progress, bool baked_places,
                         std::optional<int> page_side) {
@@ -225,7 +231,8 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
   const Fitted fit = fitted(filled, layout, baked_places, page_side, notes);
   const bool same_layout = object.origin && object.origin->layout == layout;
-  const bool same_names = object.origin && (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit);
+  const bool same_dialect = object.origin && object.origin->dialect == object.dialect;
+  const bool same_names = same_dialect && (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit);
 
   for (std::size_t i = 0; i < fit.pages.size(); ++i) {
     const PackedPage& page = fit.pages[i];
@@ -233,17 +240,16 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
     const TextureSet* kept = i < fit.kept.size() ? &fit.kept[i] : nullptr;
     write_geometry(out, folder, layout, i, page.soup, object.origin.get(),
                    same_layout && kept != nullptr ? source_set(object, *kept, true) : nullptr);
-    write_texels(out, folder, layout, i, page.texels, object.origin.get(),
+    write_texels(out, folder, layout, i, in_channel_order(page.texels, object.dialect), object.origin.get(),
                  same_names && kept != nullptr ? source_set(object, *kept, false) : nullptr);
   }
 
   std::optional<std::string> mlp;
   if (object.origin && object.decoder == object.origin->decoder && object.origin->sets.size() == fit.pages.size() &&
-      (layout == Layout::unsplit || object.origin->obj_num == static_cast<int>(fit.pages.size())) &&
-      (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit))
+      (layout == Layout::unsplit || object.origin->obj_num == static_cast<int>(fit.pages.size())) && same_names)
     mlp = unchanged_bytes(*object.origin, object.origin->mlp);
   if (!mlp) {
-    MlpFile file{*object.decoder, std::nullopt, object.other_members};
+    MlpFile file{to_dialect(*object.decoder, object.dialect), std::nullopt, object.other_members};
     if (layout != Layout::unsplit) file.obj_num = static_cast<int>(fit.pages.size());
     mlp = write_mlp_json(file);
   }

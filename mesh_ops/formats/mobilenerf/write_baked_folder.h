@@ -28,4 +28,7 @@ void write_baked_folder(AtomicFolder& out, const std::filesystem::path& folder, 
                         Layout layout, std::vector<std::string>& notes, const Progress& progress = {},
                         bool baked_places = false, std::optional<int> page_side = std::nullopt);
 
+/// The object as the published format has it: scene.json does not record dialects.
+BakedObject published(BakedObject object);
+
 }  // namespace rebake

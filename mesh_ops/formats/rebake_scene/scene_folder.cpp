@@ -367,7 +367,7 @@ std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out
     taken.push_back(folder_name(name, taken));
     folder_of[object.get()] = taken.back();
     written.push_back(object);
-    write_baked_folder(out, taken.back(), *object, object->layout, notes, progress, keeps_bodies);
+    write_baked_folder(out, taken.back(), published(*object), object->layout, notes, progress, keeps_bodies);
   };
   for (const PlacedNode& placed : placed_nodes(scene)) {
     const auto& object = placed.node->object;

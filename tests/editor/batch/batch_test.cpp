@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "editor/batch/batch.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
 #include "tests/support/light_pictures.h"
 #include "tests/support/made_scenes.h"

@@ -135,13 +135,86 @@ TEST_F(Cli, TerminalShowsAndErasesProgressBar) {
   EXPECT_EQ(seen.text.find("\\x"), std::string::npos) << "control codes must not be escaped: " << seen.text;
 }
 
+TEST_F(Cli, PicturesAreWrittenInTheFormatOfTheirName) {
+  for (const auto& [name, start] : {std::pair("a.jpg", "\xff\xd8\xff"), {"a.webp", "RIFF"}, {"a.exr", "\x76\x2f"}}) {
+    const Outcome o = rebake_run("render " + in("ball") + " -o " + in(name) + " --size 32x24 --samples 1");
+    ASSERT_EQ(o.code, 0) << o.text;
+    EXPECT_TRUE(read_file(in(name)).starts_with(start)) << name;
+  }
+  EXPECT_EQ(rebake_run("render " + in("ball") + " -o " + in("a.gif") + " --size 32x24").code, 1);
+}
+
+TEST_F(Cli, RendersEveryCameraOfAFile) {
+  const nlohmann::json upright = {{1, 0, 0, 0}, {0, 0, -1, -4}, {0, 1, 0, 0}, {0, 0, 0, 1}};
+  nlohmann::json file = {{"w", 64}, {"h", 48}, {"fl_x", 70}, {"frames", nlohmann::json::array()}};
+  for (const char* name : {"./train/r_0", "./train/r_1"})
+    file["frames"].push_back({{"file_path", name}, {"transform_matrix", upright}});
+  file["frames"][1]["w"] = 32;
+  write_text(in("transforms.json"), file.dump());
+  const std::string render = "render " + in("ball") + " --cameras " + in("transforms.json");
+  const Outcome o = rebake_run(render + " -o " + in("pictures"));
+  ASSERT_EQ(o.code, 0) << o.text;
+  EXPECT_EQ(read_image(in("pictures/r_0.png")).width, 64);
+  EXPECT_EQ(read_image(in("pictures/r_1.png")).width, 32);
+  // Where z points up in the file, its camera stands at (0, 0, 4).
+  ASSERT_EQ(rebake_run("render " + in("ball") + " -o " + in("same.png") +
+                       " --size 64x48 --eye 0,0,4 --target 0,0,0 --fov 37.8498657")
+                .code,
+            0);
+  EXPECT_EQ(rebake_run("compare " + in("same.png") + " " + in("pictures/r_0.png") + " --min-psnr 60").code, 0);
+  write_picture(Image{1, 1, {1, 2, 3}}, in("pictures/r_0.png"), {});
+  std::filesystem::create_directories(in("train"));
+  std::filesystem::copy_file(in("pictures/r_0.png"), in("train/r_0.png"));
+  EXPECT_EQ(rebake_run(render + " -o " + in("train")).code, 1) << "photographs are protected";
+  EXPECT_EQ(read_image(in("train/r_0.png")).width, 1);
+  EXPECT_EQ(rebake_run(render + " -o " + in("pictures") + " --size 20x20").code, 2);
+  EXPECT_EQ(rebake_run(render + " -o " + in("pictures") + " --camera-format colmap").code, 1);
+  EXPECT_EQ(rebake_run(render).code, 2);
+  EXPECT_EQ(rebake_run(render + " -o " + in("pictures") + " --eye 1,2,3").code, 2);
+  EXPECT_EQ(rebake_run("render " + in("ball") + " -o " + in("b.png") + " --world z_up").code, 2);
+  EXPECT_EQ(rebake_run("render " + in("ball") + " --cameras " + in("ball") + " -o " + in("pictures")).code, 1);
+}
+
+TEST_F(Cli, RepairWritesACleanFolderAndSaysWhatItDid) {
+  write_text(in("ball/Shape0.OBJ"), "l 1 2\n" + read_file(in("ball/shape0.obj")));
+  std::filesystem::remove(in("ball/shape0.obj"));
+  const Outcome o = rebake_run("repair " + in("ball") + " -o " + in("clean"));
+  ASSERT_EQ(o.code, 0) << o.text;
+  EXPECT_NE(o.text.find("Shape0.OBJ is read as shape0.obj"), std::string::npos) << o.text;
+  EXPECT_NE(o.text.find("line 1: lines and points are skipped"), std::string::npos) << o.text;
+  const Outcome again = rebake_run("repair " + in("clean") + " -o " + in("copy"));
+  EXPECT_NE(again.text.find("nothing needed repair"), std::string::npos) << again.text;
+  EXPECT_EQ(read_file(in("clean/shape0.obj")), read_file(in("copy/shape0.obj")));
+  EXPECT_EQ(rebake_run("repair " + in("ball") + " -o " + in("ball")).code, 1) << "the source is protected";
+  EXPECT_EQ(rebake_run("repair " + in("none") + " -o " + in("out")).code, 1);
+}
+
+TEST_F(Cli, ExportHasTheOptionsOfTheAction) {
+  const std::string help = rebake_run("export --help").text;
+  for (const char* option : {"--layout", "--format", "--plain", "--width", "--way", "--keep", "--psnr", "--seconds",
+                             "--report", "--page-size", "--picture-size", "--nodes"})
+    EXPECT_NE(help.find(option), std::string::npos) << option << "\n" << help;
+  const auto code = [&](const std::string& options) {
+    return rebake_run("export " + in("ball") + " -o " + in("out") + " " + options).code;
+  };
+  for (const char* wrong : {"--page-size 0", "--page-size x", "--page-size 1.5", "--layout flat", "--format obj",
+                            "--width 3 --plain", "--width wide --plain", "--psnr high --plain", "--way best --plain",
+                            "--picture-size 1 --plain", "--psnr 40", "--nodes nobody", "--layuot split"})
+    EXPECT_EQ(code(wrong), 2) << wrong;
+  EXPECT_FALSE(std::filesystem::exists(in("out")));
+  EXPECT_EQ(code("--layout unsplit --page-size 256 --nodes ball"), 0);
+  EXPECT_TRUE(std::filesystem::exists(in("out/shape.obj")));
+  EXPECT_EQ(code("--format rebake"), 0);
+  EXPECT_TRUE(std::filesystem::exists(in("out/scene.json")));
+}
+
 TEST_F(Cli, MissingModulesAreNamedWithARemedy) {
-  write_png({1, 1, {1, 2, 3}}, in("a.png"), {});
+  write_picture(Image{1, 1, {1, 2, 3}}, in("a.png"), {});
   const std::string alone = in("rebake");
   std::filesystem::copy_file(REBAKE_PROGRAM, alone);
   const Outcome compared = run(alone, "compare " + in("a.png") + " " + in("a.png"));
   EXPECT_EQ(compared.code, 1);
-  EXPECT_NE(compared.text.find("a.png: cannot be read: librebake_pictures.so"), std::string::npos) << compared.text;
+  EXPECT_NE(compared.text.find("a.png: needs librebake_pictures.so"), std::string::npos) << compared.text;
   const Outcome trained = run(alone, "light train " + in("ball") + " --way net --poses 8 -o " + in("n.light") +
                                          " --edit " + R"('{"op": "bend", "node": "ball", "degrees": 20}')");
   EXPECT_EQ(trained.code, 1);

@@ -2,8 +2,11 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <webp/decode.h>
+#include <webp/encode.h>
 
 #include <utility>
+#include <vector>
 
 namespace {
 
@@ -76,6 +79,68 @@ class Codecs : public rebake::PictureCodecs {
       return nullptr;
     }
     return std::make_unique<Reader>(std::move(input), std::move(source));
+  }
+
+  bool decode_webp(std::string_view bytes, rebake::WebpImage& image, std::string& error) const override {
+    const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    WebPBitstreamFeatures features;
+    if (WebPGetFeatures(data, bytes.size(), &features) != VP8_STATUS_OK || features.has_animation != 0) {
+      error = "it is not a WebP image, or an animation";
+      return false;
+    }
+    constexpr int lossless = 2;
+    image = {features.width, features.height, features.format == lossless, {}};
+    image.rgba.resize(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4);
+    if (WebPDecodeRGBAInto(data, bytes.size(), image.rgba.data(), image.rgba.size(), image.width * 4) != nullptr)
+      return true;
+    error = "it may be truncated";
+    return false;
+  }
+
+  bool encode(const std::string& format, int width, int height, const std::uint8_t* pixels, std::string& bytes,
+              std::string& error) const override {
+    // OpenImageIO's own WebP files are not without loss.
+    if (format == "webp") return encode_webp(width, height, pixels, bytes, error);
+    return encode_as(format, {width, height, 3, OIIO::TypeDesc::UINT8}, OIIO::TypeDesc::UINT8, pixels, bytes, error);
+  }
+  bool encode(const std::string& format, int width, int height, const float* pixels, std::string& bytes,
+              std::string& error) const override {
+    return encode_as(format, {width, height, 3, OIIO::TypeDesc::HALF}, OIIO::TypeDesc::FLOAT, pixels, bytes, error);
+  }
+
+ private:
+  static bool encode_webp(int width, int height, const std::uint8_t* pixels, std::string& bytes, std::string& error) {
+    std::uint8_t* written = nullptr;
+    const std::size_t size = WebPEncodeLosslessRGB(pixels, width, height, 3 * width, &written);
+    if (size == 0) {
+      error = "the picture is too large for WebP, which holds at most 16383² pixels";
+      return false;
+    }
+    bytes.assign(reinterpret_cast<const char*>(written), size);
+    WebPFree(written);
+    return true;
+  }
+
+  static bool encode_as(const std::string& format, OIIO::ImageSpec spec, const OIIO::TypeDesc& type, const void* pixels,
+                        std::string& bytes, std::string& error) {
+    std::vector<unsigned char> written;
+    OIIO::Filesystem::IOVecOutput target(written);
+    OIIO::Filesystem::IOProxy* proxy = &target;
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    spec.attribute("oiio:ColorSpace", spec.format == OIIO::TypeDesc::HALF ? "Linear" : "sRGB");
+    spec.attribute("compression", format == "jpeg" ? "jpeg:95" : "zip");
+    spec.attribute("jpeg:subsampling", "4:4:4");
+    const auto output = OIIO::ImageOutput::create(format);
+    if (!output) {
+      error = "OpenImageIO cannot write this format; install libopenimageio with support for it";
+      return false;
+    }
+    if (!output->open("picture." + format, spec) || !output->write_image(type, pixels) || !output->close()) {
+      error = output->geterror();
+      return false;
+    }
+    bytes.assign(written.begin(), written.end());
+    return true;
   }
 };
 

@@ -158,7 +158,7 @@ TEST(RgbaPng, LeavesOtherKindsToOpenImageIO) {
   const std::filesystem::path name = "a.png";
   EXPECT_TRUE(open_rgba_png(plain, name));
   EXPECT_FALSE(open_rgba_png(interlaced, name));
-  const FeatureTexture read = read_feature_pngs(plain, name, interlaced, name, AlphaCode::plain);
+  const FeatureTexture read = read_feature_images(plain, name, interlaced, name, AlphaCode::plain).texels;
   const Texel texel = TexelReader(read).at(0, 0);
   EXPECT_EQ(texel.feat0, (std::array<std::uint8_t, 4>{1, 2, 3, 4}));
   EXPECT_EQ(texel.feat1, texel.feat0);

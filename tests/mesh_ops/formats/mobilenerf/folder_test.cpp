@@ -198,7 +198,8 @@ TEST(Folder, FeaturePngsPreserveBytesWithoutColourChunks) {
   const auto texture = made_object()->sets[0].texels;
   const std::string png = write_feature_png(*texture, 0);
   for (const char* chunk : {"gAMA", "cHRM", "iCCP", "sRGB"}) EXPECT_EQ(png.find(chunk), std::string::npos) << chunk;
-  const FeatureTexture back = read_feature_pngs(png, "a", write_feature_png(*texture, 1), "b", AlphaCode::halved);
+  const FeatureTexture back =
+      read_feature_images(png, "a", write_feature_png(*texture, 1), "b", AlphaCode::halved).texels;
   const TexelReader were(*texture), are(back);
   for (int y = 0; y < back.height(); ++y)
     for (int x = 0; x < back.width(); ++x) ASSERT_EQ(are.at(x, y), were.at(x, y));
@@ -215,7 +216,7 @@ TEST(Folder, TexturesAreCompleteIfTheirTaskGroupIsCancelled) {
       0, 1,
       [&](int) {
         around.cancel_group_execution();
-        read = read_feature_pngs(feat0, "a", feat1, "b", texture->alpha_code());
+        read = read_feature_images(feat0, "a", feat1, "b", texture->alpha_code()).texels;
         made = FeatureTexture::from_rows(texture->width(), texture->height(), texture->alpha_code(),
                                          [&](int y, Texel* row) {
                                            for (int x = 0; x < texture->width(); ++x) row[x] = texels.at(x, y);

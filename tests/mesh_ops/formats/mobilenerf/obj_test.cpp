@@ -48,6 +48,38 @@ TEST(Obj, SplitsCornersWithSeveralUvs) {
   EXPECT_EQ(mesh.positions[mesh.faces[1][0]], Vec3(0, 0, 0));
 }
 
+TEST(Obj, ReadsWhatModellersWrite) {
+  const ObjMesh mesh = read_obj(
+      "mtllib a.mtl\no first\nv 0 0 0 0.5 0.5 0.5\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl red\ns off\n"
+      "f 1/1 2/2 \\\n 3/3\no second\nl 1 2\np 1\ncurv 1 2\nf 3/3 \\\r\n2/2 1/1 # behind\n",
+      "a.obj");
+  EXPECT_EQ(mesh.faces, (std::vector<Face>{{0, 1, 2}, {2, 1, 0}}));
+  EXPECT_TRUE(mesh.needs_repair) << "viewers draw objects with lines as lines";
+  const std::vector<std::string> expected{
+      "line 1: objects, groups, materials and normals are skipped; all faces are one mesh (5 in total)",
+      "line 16: unknown statements such as \"curv\" are skipped (1 in total)",
+      "line 3: numbers after x y z (vertex colours or weights) are skipped (1 in total)",
+      "line 14: lines and points are skipped (2 in total)"};
+  EXPECT_EQ(mesh.assumptions, expected);
+}
+
+TEST(Obj, CommentsAreNotContinued) {
+  const ObjMesh mesh = read_obj("# C:\\models\\\n" + quad + "f 1/1 2/2 \\\n3/3\n", "a.obj");
+  EXPECT_EQ(mesh.positions.size(), read_obj(quad, "a.obj").positions.size());
+}
+
+TEST(Obj, CutsConcavePolygons) {
+  const ObjMesh mesh = read_obj(
+      "v 0 0 0\nv 2 -1 0\nv 0 3 0\nv -2 -1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 2/2 3/3 4/4 1/1\nf 1/1 2/2 3/3\n",
+      "a.obj");
+  ASSERT_EQ(mesh.faces.size(), 3U);
+  for (std::size_t f = 0; f < 2; ++f)
+    EXPECT_NE(std::find(mesh.faces[f].begin(), mesh.faces[f].end(), 0U), mesh.faces[f].end()) << "cut at the notch";
+  ASSERT_EQ(mesh.assumptions.size(), 1U);
+  EXPECT_EQ(mesh.assumptions[0], "line 9: concave polygons are cut by clipping ears (1 in total)");
+  EXPECT_TRUE(mesh.needs_repair);
+}
+
 struct BadObj {
   const char* name;
   std::string text;
@@ -56,18 +88,17 @@ struct BadObj {
 class BadObjFile : public ::testing::TestWithParam<BadObj> {};
 INSTANTIATE_TEST_SUITE_P(
     Obj, BadObjFile,
-    ::testing::Values(BadObj{"range", quad + "f 1/1 2/2 9/9\n", "line 11: vertex index 9 is out of range"},
-                      BadObj{"uv_range", quad + "v 1 1 1\nf 1/1 2/2 5/5\n", "line 12: vt index 5 is out of range"},
-                      BadObj{"negative_range", quad + "f -1/-1 -2/-2 -5/-1\n", "out of range"},
-                      BadObj{"zero", quad + "f 0/1 2/2 3/3\n", "not a vertex index"},
-                      BadObj{"no_vt", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "no texture coordinates"},
-                      BadObj{"no_vt_normals", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n",
-                             "no texture coordinates"},
-                      BadObj{"nan", "v 0 nan 0\n", "line 1: \"nan\" is not a finite number"},
-                      BadObj{"inf", "v 0 1e999 0\n", "not a finite number"},
-                      BadObj{"short_v", "v 0 1\n", "line 1: is truncated"},
-                      BadObj{"short_f", quad + "f 1/1 2/2\n", "three corners"},
-                      BadObj{"text", "v a b c\n", "is not a number"}, BadObj{"line", quad + "l 1 2\n", "only faces"}),
+    ::testing::Values(
+        BadObj{"range", quad + "f 1/1 2/2 9/9\n", "line 11: vertex index 9 is out of range"},
+        BadObj{"uv_range", quad + "v 1 1 1\nf 1/1 2/2 5/5\n", "line 12: vt index 5 is out of range"},
+        BadObj{"negative_range", quad + "f -1/-1 -2/-2 -5/-1\n", "out of range"},
+        BadObj{"zero", quad + "f 0/1 2/2 3/3\n", "not a vertex index"},
+        BadObj{"no_vt", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "no texture coordinates"},
+        BadObj{"no_vt_normals", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n", "no texture coordinates"},
+        BadObj{"nan", "v 0 nan 0\n", "line 1: \"nan\" is not a finite number"},
+        BadObj{"inf", "v 0 1e999 0\n", "not a finite number"}, BadObj{"short_v", "v 0 1\n", "line 1: is truncated"},
+        BadObj{"short_f", quad + "f 1/1 2/2\n", "three corners"}, BadObj{"text", "v a b c\n", "is not a number"},
+        BadObj{"continued", quad + "f 1/1 \\\n2/2 9/9\n\nf 1/1\n", "line 14: a face needs"}),
     [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST_P(BadObjFile, RejectsWithFileAndLine) {

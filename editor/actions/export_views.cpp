@@ -1,0 +1,45 @@
+#include "editor/actions/export_views.h"
+
+#include "editor/actions/describe_action.h"
+#include "editor/edits/stored_view.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
+
+namespace rebake {
+
+void run(Session& session, const ExportViewsAction& action) {
+  if (action.out.empty()) throw FieldError("out", "is empty");
+  if (action.width < 1 || action.width > 1 << 20) throw FieldError("width", "must lie between 1 and 1048576");
+  if (action.height < 1 || action.height > 1 << 20) throw FieldError("height", "must lie between 1 and 1048576");
+  const CameraFormat& format = camera_format_named(action.format.name.empty() ? "transforms" : action.format.name);
+  if (format.write == nullptr)
+    throw FieldError("format",
+                     fmt::format("{} is only read; use {}", format.name, fmt::join(written_camera_formats(), " or ")));
+  const Scene scene = session.scene();
+  const std::vector<std::string> names = action.views.empty() ? view_names(scene) : action.views;
+  if (names.empty()) throw FieldError("views", "is empty, and the scene has no stored views");
+  std::vector<PhotoCamera> cameras;
+  for (const std::string& name : names)
+    cameras.push_back(photo_camera(stored_view(scene, name, "views"), name + ".png", action.width, action.height));
+  write_file_atomically(action.out, format.write(from_y_up(std::move(cameras), action.world.value_or(format.up))),
+                        session.document.sources());
+  session.outputs.push_back(action.out);
+  session.say(fmt::format("wrote {} views to {}", names.size(), action.out));
+}
+
+REBAKE_DESCRIBE_ACTION(
+    ExportViewsAction, "Writes stored views as a camera file.", (auto& action, auto& visit) {
+      visit("out", action.out, Need::required, "file to write");
+      visit("format", action.format, Need::optional,
+            "transforms: transforms.json of NeRF, nerfstudio and instant-ngp; nerfstudio_path: camera_path.json");
+      visit("views", action.views, Need::optional, "names of stored views; default: all");
+      visit("width", action.width, Need::optional, "width of the pictures", Unit::pixels);
+      visit("height", action.height, Need::optional, "height of the pictures", Unit::pixels);
+      visit("world", action.world, Need::optional, "axis that points up in the file; default: z_up");
+    })
+
+}  // namespace rebake

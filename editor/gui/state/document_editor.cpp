@@ -1,0 +1,363 @@
+#include "editor/gui/state/document_editor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "editor/edits/nodes/duplicate.h"
+#include "editor/edits/nodes/group.h"
+#include "editor/edits/nodes/merge.h"
+#include "editor/edits/select/select_picture.h"
+#include "editor/edits/shape/separate.h"
+#include "editor/edits/support.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/formats.h"
+
+namespace rebake {
+
+namespace {
+
+// Waits for the result of a preview; null if it failed or was dropped. Throws Cancelled.
+std::shared_ptr<const AppliedEdits> wait_for_preview(
+    const std::shared_future<std::shared_ptr<const AppliedEdits>>& made, const Progress& progress) {
+  constexpr std::chrono::milliseconds look{20};
+  while (made.wait_for(look) != std::future_status::ready) progress.at("waiting for the preview", 0);
+  try {
+    return made.get();
+  } catch (const std::future_error&) {
+    return nullptr;  // a newer request replaced it before it began
+  }
+}
+
+}  // namespace
+
+DocumentEditor::DocumentEditor(const std::function<void()>& wake)
+    : previews(wake), jobs(wake), now(jobs.worker.snapshot()) {}
+
+bool DocumentEditor::take_news() {
+  at_rest_ = !jobs.worker.busy();
+  std::vector<Worker::Message> news = jobs.worker.take_messages();
+  for (Worker::Message& message : news) {
+    switch (message.kind) {
+      case Worker::Message::Kind::failed:
+        messages.fail(std::move(message.text));
+        break;
+      case Worker::Message::Kind::reported:
+        messages.note(std::move(message.text));
+        break;
+      default:
+        messages.say(std::move(message.text));
+    }
+  }
+  // Taken before the snapshot, so that the snapshot is at least as new.
+  finished_ = jobs.worker.take_finished();
+  const std::shared_ptr<const Snapshot> next = jobs.worker.snapshot();
+  if (next == now) return false;
+  const bool other = next->scene.roots != scene().roots;
+  const bool made_more =
+      next->done.size() > now->done.size() && next->done.back().type().makes_nodes && next->before_last;
+  // The status bar shows the title of a new or changed last step.
+  const bool further = next->steps_done > now->steps_done;
+  if (next->steps_done > 0 &&
+      (further || (next->steps_done == now->steps_done && next->done.back().value() != now->done.back().value())))
+    status = next->steps[next->steps_done - 1].title;
+  now = next;
+  if (other && preview && preview->of != next->scene.roots) drop_preview();
+  std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
+  if (made_more) pick_new(placed_nodes(*now->before_last));
+  selected_.clear();
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (placed.node->selection)
+      if (const std::size_t triangles = count(*placed.node->selection); triangles > 0)
+        selected_[placed.node->id] = triangles;
+  return true;
+}
+
+void DocumentEditor::call_finished() {
+  for (const std::function<void()>& then : std::exchange(finished_, {})) {
+    try {
+      then();
+    } catch (const std::exception& problem) {
+      messages.fail(problem.what());
+    }
+  }
+  if (std::optional<Preview> made = previews.take(); made && made->of == scene().roots) preview = std::move(made);
+}
+
+// Users usually go on with the nodes that were just created.
+void DocumentEditor::pick_new(const std::vector<PlacedNode>& before) {
+  std::set<NodeId> old;
+  for (const PlacedNode& placed : before) old.insert(placed.node->id);
+  active.clear();
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (!old.contains(placed.node->id)) active.insert(placed.node->id);
+  const std::vector<NodeId> tops = active_tops();
+  active = {tops.begin(), tops.end()};
+}
+
+void DocumentEditor::show_preview(std::vector<Edit> list, std::optional<Scene> from, Previews::Make quick) {
+  const auto done = std::make_shared<std::promise<std::shared_ptr<const AppliedEdits>>>();
+  asked_ = PreviewRequest{list, done->get_future().share()};
+  Previews::Make exact = [from = from ? *std::move(from) : scene(), list = std::move(list),
+                          done](const Progress& progress) {
+    try {
+      const auto made = std::make_shared<const AppliedEdits>(apply_edits(from, list, progress));
+      done->set_value(made);
+      return made->scenes.empty() ? from : made->scenes.back();
+    } catch (...) {
+      done->set_value(nullptr);
+      throw;
+    }
+  };
+  if (quick)
+    previews.request(scene().roots, std::move(quick), std::move(exact));
+  else
+    previews.request(scene().roots, std::move(exact));
+}
+
+std::optional<DocumentEditor::PreviewRequest> DocumentEditor::matching_preview(const std::vector<Edit>& list) const {
+  const auto same = [](const Edit& a, const Edit& b) { return &a.type() == &b.type() && to_json(a) == to_json(b); };
+  if (asked_ && std::equal(asked_->list.begin(), asked_->list.end(), list.begin(), list.end(), same)) return asked_;
+  return std::nullopt;
+}
+
+void DocumentEditor::end_preview(std::size_t shown) {
+  if (previews.requests() == shown)
+    drop_preview();
+  else
+    preview.reset();
+}
+
+void DocumentEditor::drop_preview() {
+  asked_.reset();
+  previews.drop();
+  preview.reset();
+}
+
+void DocumentEditor::edit(const Edit& one) { edits({one}); }
+
+void DocumentEditor::change(std::string title, Worker::Job job, std::function<void()> then,
+                            std::function<void()> otherwise) {
+  at_rest_ = false;
+  const auto ending = [this, shown = previews.requests()](std::function<void()> after) {
+    return [this, shown, after = std::move(after)] {
+      end_preview(shown);  // also after a failure
+      if (after) after();
+    };
+  };
+  jobs.worker.start(std::move(title), std::move(job), ending(std::move(then)), ending(std::move(otherwise)));
+}
+
+void DocumentEditor::edits(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
+  if (list.empty()) return;
+  previews.drop_stale();
+  const auto job = [list, asked = matching_preview(list)](Session& session) {
+    const auto made = asked ? wait_for_preview(asked->made, session.progress) : nullptr;
+    session.edits(list, made.get());
+  };
+  change(list.front().type().op, job, std::move(then), std::move(otherwise));
+}
+
+void DocumentEditor::edits_if_changing(const std::vector<Edit>& list) {
+  if (list.empty()) return;
+  previews.drop_stale();
+  const auto unchanged = std::make_shared<std::string>();
+  const auto job = [list, unchanged](Session& session) {
+    const AppliedEdits made = apply_edits(session.scene(), list, session.progress);
+    if (made.scenes.back().roots != session.scene().roots) {
+      session.edits(list, &made);
+      return;
+    }
+    for (const Report& report : made.reports)
+      for (const std::string& line : report.lines) *unchanged += (unchanged->empty() ? "" : "; ") + line;
+  };
+  change(list.front().type().op, job,
+         [this, unchanged] {
+           if (!unchanged->empty()) status = *unchanged;
+         },
+         {});
+}
+
+void DocumentEditor::adjust(const std::vector<Edit>& list, std::function<void()> then,
+                            std::function<void()> otherwise) {
+  replace_last(&Session::adjust, list, std::move(then), std::move(otherwise));
+}
+
+void DocumentEditor::revise(const std::vector<Edit>& list, std::function<void()> then,
+                            std::function<void()> otherwise) {
+  replace_last(&Session::revise, list, std::move(then), std::move(otherwise));
+}
+
+void DocumentEditor::replace_last(Replace how, const std::vector<Edit>& list, std::function<void()> then,
+                                  std::function<void()> otherwise) {
+  if (now->done.empty()) return;
+  previews.drop_stale();
+  const auto job = [how, list, last = now->done.back(), asked = matching_preview(list)](Session& session) {
+    const std::vector<Edit> done = session.document.history().edits();
+    if (done.empty() || done.back().value() != last.value())
+      throw EditError("another step was applied in the meantime; nothing was changed, try again");
+    const auto made = asked ? wait_for_preview(asked->made, session.progress) : nullptr;
+    (session.*how)(list, made.get());
+  };
+  change(list.front().type().op, job, std::move(then), std::move(otherwise));
+}
+
+void DocumentEditor::undo(int steps) {
+  at_rest_ = false;
+  jobs.worker.start(
+      "undo",
+      [steps](Session& session) {
+        int done = 0;
+        while (done < steps && session.document.undo_step(session.progress)) ++done;
+      },
+      [this, said = title_of_steps(-steps)] { status = "Undid: " + said; });
+}
+void DocumentEditor::redo(int steps) {
+  at_rest_ = false;
+  jobs.worker.start(
+      "redo",
+      [steps](Session& session) {
+        int done = 0;
+        while (done < steps && session.document.redo_step(session.progress)) ++done;
+      },
+      [this, said = title_of_steps(steps)] { status = "Redid: " + said; });
+}
+
+const SelectPicture* DocumentEditor::last_visible_selection() const {
+  const auto last =
+      std::find_if(now->done.rbegin(), now->done.rend(), [](const Edit& edit) { return edit.type().selects; });
+  const auto* picture = last == now->done.rend() ? nullptr : last->as<SelectPicture>();
+  return picture != nullptr && !picture->through ? picture : nullptr;
+}
+
+std::string DocumentEditor::title_of_steps(int steps) const {
+  const auto done = static_cast<int>(now->steps_done), first = std::min(done, done + steps);
+  if (std::abs(steps) > 1) return fmt::format("{} steps", std::abs(steps));
+  return first >= 0 && first < static_cast<int>(now->steps.size()) ? now->steps[static_cast<std::size_t>(first)].title
+                                                                   : "nothing";
+}
+
+std::vector<NodeId> DocumentEditor::active_tops() const {
+  std::vector<NodeId> tops;
+  for (const NodeId id : active) {
+    bool below = false;
+    for (NodeId parent = parent_of(scene(), id); parent != NodeId::none && !below; parent = parent_of(scene(), parent))
+      below = active.contains(parent);
+    if (!below) tops.push_back(id);
+  }
+  return tops;
+}
+
+Box DocumentEditor::focus() const {
+  Box box;
+  for (const NodeId id : active) box.extend(subtree_bounds(scene(), id));
+  return box.isEmpty() ? world_bounds(scene()) : box;
+}
+
+std::vector<std::optional<NodeRef>> DocumentEditor::scope(bool selected) const {
+  if (active.empty()) return {std::nullopt};
+  std::vector<std::optional<NodeRef>> nodes;
+  for (const PlacedNode& placed : placed_nodes(scene())) {
+    if (!placed.node->object) continue;
+    if (selected && !selected_.contains(placed.node->id)) continue;
+    if (in_scope(placed)) nodes.emplace_back(NodeRef{placed.node->id});
+  }
+  return nodes;
+}
+
+bool DocumentEditor::in_scope(const PlacedNode& placed) const {
+  if (!placed.visible || placed.locked) return false;
+  bool inside = active.empty() || active.contains(placed.node->id);
+  for (NodeId up = parent_of(scene(), placed.node->id); up != NodeId::none && !inside; up = parent_of(scene(), up))
+    inside = active.contains(up);
+  return inside;
+}
+
+std::size_t DocumentEditor::selected_triangles() const {
+  std::size_t triangles = 0;
+  if (selected_.empty()) return triangles;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (const auto found = selected_.find(placed.node->id); found != selected_.end() && in_scope(placed))
+      triangles += found->second;
+  return triangles;
+}
+
+std::vector<NodeId> DocumentEditor::selected_out_of_scope() const {
+  std::vector<NodeId> nodes;
+  if (selected_.empty()) return nodes;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (selected_.contains(placed.node->id) && !in_scope(placed)) nodes.push_back(placed.node->id);
+  return nodes;
+}
+
+std::string DocumentEditor::selected_words() const {
+  std::size_t all = 0;
+  for (const auto& [node, triangles] : selected_) all += triangles;
+  if (all == 0) return "";
+  const std::size_t here = selected_triangles();
+  std::string words = fmt::format("{} selected", here);
+  if (!active.empty()) words += " " + scope_words();
+  if (all > here) words += fmt::format(", {} elsewhere", all - here);
+  return words;
+}
+
+std::string DocumentEditor::scope_words() const {
+  if (active.empty()) return "in the scene";
+  const NodePtr only = active.size() == 1 ? find(scene(), *active.begin()) : nullptr;
+  return only ? "in " + only->name : fmt::format("in {} picked", active.size());
+}
+
+std::vector<DeformTarget> DocumentEditor::deform_targets() const {
+  std::vector<DeformTarget> targets;
+  const auto nodes = scope(true);
+  if (selected_triangles() > 0)
+    for (const std::optional<NodeRef>& node : nodes) {
+      targets.emplace_back();
+      targets.back().node = node;
+      targets.back().selection = true;
+    }
+  if (!targets.empty()) return targets;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (placed.visible && !placed.locked && placed.node->object &&
+        (active.empty() || active.contains(placed.node->id))) {
+      targets.emplace_back();
+      targets.back().node = NodeRef{placed.node->id};
+      break;
+    }
+  return targets;
+}
+
+std::set<NodeId> DocumentEditor::deform_nodes() const {
+  std::set<NodeId> nodes;
+  for (const DeformTarget& target : deform_targets()) {
+    if (target.node) {
+      nodes.insert(target.node->id);
+      continue;
+    }
+    for (const PlacedNode& placed : placed_nodes(scene()))
+      if (placed.visible && !placed.locked && placed.node->selection && count(*placed.node->selection) > 0)
+        nodes.insert(placed.node->id);
+  }
+  return nodes;
+}
+
+Box DocumentEditor::deform_bounds(const std::vector<DeformTarget>& targets) const {
+  Box box;
+  for (const DeformTarget& target : targets) {
+    if (!target.selection) {
+      box.extend(subtree_bounds(scene(), target.node->id));
+      continue;
+    }
+    for (const PlacedNode& placed : placed_nodes(scene()))
+      if (placed.visible && !placed.locked && placed.node->selection &&
+          (!target.node || target.node->id == placed.node->id))
+        box.extend(selection_bounds(placed));
+  }
+  return box;
+}
+
+}  // namespace rebake

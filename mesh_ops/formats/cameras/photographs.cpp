@@ -1,0 +1,36 @@
+#include "mesh_ops/formats/cameras/photographs.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+fs::path photograph_at(const fs::path& folder, const std::string& name) {
+  const fs::path inside = fs::path(name).lexically_normal();
+  if (inside.empty() || inside.is_absolute() || *inside.begin() == "..") return {};
+  for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".JPG", ".PNG"}) {
+    std::error_code error;
+    if (fs::path path = folder / (name + extension); fs::is_regular_file(path, error)) return path;
+  }
+  return {};
+}
+
+fs::path capture_folder(const fs::path& camera_file) {
+  std::error_code error;
+  fs::path folder = fs::absolute(camera_file).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  if (!fs::is_directory(folder, error)) folder = folder.parent_path();
+  if (folder.filename() == "0" && folder.parent_path().filename() == "sparse") folder = folder.parent_path();
+  return folder.filename() == "sparse" ? folder.parent_path() : folder;
+}
+
+std::vector<fs::path> capture_files(const fs::path& camera_file, const std::vector<PhotoCamera>& cameras) {
+  const fs::path folder = capture_folder(camera_file);
+  std::vector<fs::path> files;
+  for (const PhotoCamera& camera : cameras)
+    for (const fs::path& file : {photograph_at(folder, camera.name), photograph_at(folder / "images", camera.name),
+                                 photograph_at(folder, camera.mask.string())})
+      if (!file.empty()) files.push_back(file);
+  return files;
+}
+
+}  // namespace rebake

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/scene/photo_camera.h"
+
+namespace rebake {
+
+/// The photograph with this name in a folder; its extension may be missing. Empty if it is not there, or if the name
+/// leaves the folder.
+std::filesystem::path photograph_at(const std::filesystem::path& folder, const std::string& name);
+
+/// The folder that names of photographs and masks in a camera file are relative to: that of the file, or the folder
+/// around COLMAP's sparse/0.
+std::filesystem::path capture_folder(const std::filesystem::path& camera_file);
+
+/// The photographs and masks of a capture that exist, to be protected from being overwritten.
+std::vector<std::filesystem::path> capture_files(const std::filesystem::path& camera_file,
+                                                 const std::vector<PhotoCamera>& cameras);
+
+}  // namespace rebake
