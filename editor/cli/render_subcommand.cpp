@@ -206,8 +206,8 @@ void describe_render(SubcommandDescription& command) {
   auto options = std::make_shared<Rendering>();
   command.option("folders", options->folders, "folders and scenes to render together", "FOLDER|SCENE|PROJECT...")
       .required();
-  command.option("-o,--out", options->out,
-                 "picture to write: .png or .webp without loss, .jpg, or .exr (linear light)", "OUT.png");
+  command.option("-o,--out", options->out, "picture to write: .png or .webp without loss, .jpg, or .exr (linear light)",
+                 "OUT.png");
   options->view.add_to(command);
   options->reading.add_to(command);
   command.option("--cameras", options->cameras,
