@@ -484,6 +484,8 @@ const char* to_string(Unit unit) {
 }
 
 std::string words_of(const std::string& identifier) {
+  for (const auto& [name, spelt] : {std::pair("psnr", "PSNR"), {"bgr", "BGR"}})
+    if (identifier == name) return spelt;
   std::string words = identifier;
   std::replace(words.begin(), words.end(), '_', ' ');
   if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));

@@ -54,8 +54,10 @@ void draw_choice(const FieldInfo& field, json& values) {
 // A text field for a value that may be an expression or JSON. `text`: the text as typed.
 void draw_text(const FieldInfo& field, std::string& text, json& values) {
   const char* name = field.name.c_str();
-  if (ImGui::InputTextWithHint("##value", field.initial.empty() ? field.type.words.c_str() : field.initial.c_str(),
-                               &text)) {
+  // The default; that of a text without its quotes.
+  std::string hint = field.initial.empty() ? field.type.words : field.initial;
+  if (hint.size() > 1 && hint.starts_with('"')) hint = hint.substr(1, hint.size() - 2);
+  if (ImGui::InputTextWithHint("##value", hint.c_str(), &text)) {
     if (text.empty()) {
       values.erase(name);
     } else if (field.type.kind == FieldKind::text) {
