@@ -90,7 +90,7 @@ StudyTable study_masks(const StudyInput& input) {
         return whole > 0 ? 100 * static_cast<double>(part) / static_cast<double>(whole) : 0;
       };
       table.rows.push_back(
-          {fmt::format("{} photographs, {:g} % wrong pixels", count, noise * 100),
+          {fmt::format("{} masks, {:g} % wrong", count, noise * 100),
            {time, percent(wrong, seen), static_cast<double>(count), noise * 100, percent(all - seen, all)}});
     }
   return table;

@@ -66,7 +66,7 @@ inline constexpr Study study_table[] = {
     {"transfer", "radiance transfer of a deformed body: rotated, learnt, traced", study_transfer},
     {"light", "estimation of baked light, by views and albedos", study_light},
     {"slim", "removal of invisible triangles, and fewer bits per feature: size, image error, frame time", study_slim},
-    {"masks", "selection from masks of photographs: number of photographs, wrong pixels", study_masks},
+    {"masks", "selection by masks: photographs and wrong pixels", study_masks},
 };
 
 /// Empty table for comparisons of images. Columns: median frame time in ms; PSNR in dB, at most 100; largest channel
