@@ -15,11 +15,23 @@ namespace rebake {
 
 namespace {
 
+// The origin with files that exports write instead of copying. Its arrays still tell which sets are unchanged, so that
+// those are not repacked.
+Origin without_copies(Origin origin) {
+  origin.mlp.name.clear();
+  for (Origin::Set& set : origin.sets) {
+    for (SourceFile& file : set.geometry) file.name.clear();
+    set.feat0.name.clear();
+    set.feat1.name.clear();
+  }
+  return origin;
+}
+
 // The scene with an object that exports write instead of copying its files, in the published form.
 Scene rewritten(const Scene& scene) {
   return with_changed(scene, scene.roots.front()->id, [](Node& node) {
     auto object = std::make_shared<BakedObject>(published(*node.object));
-    object->origin = nullptr;
+    if (object->origin) object->origin = std::make_shared<const Origin>(without_copies(*object->origin));
     node.object = std::move(object);
   });
 }

@@ -10,6 +10,22 @@ namespace rebake {
 
 using nlohmann::json;
 
+namespace {
+
+// Appends the files of an edit that reads more than its source. Its node may not exist yet, and has no influence on
+// them.
+void add_input_files(json line, std::vector<ScriptInput>& inputs) {
+  const std::string op = line.value("op", "");
+  const auto types = edit_types();
+  const auto type = std::find_if(types.begin(), types.end(), [&](const EditType* one) { return op == one->op; });
+  if (type == types.end() || (*type)->input_files == nullptr) return;
+  line.erase("node");
+  const Edit edit = read_edit(line, {});
+  for (std::filesystem::path& file : (*type)->input_files(edit.value())) inputs.push_back({std::move(file), false});
+}
+
+}  // namespace
+
 std::vector<ScriptInput> script_inputs(std::string_view text, const std::map<std::string, std::string>& variables) {
   std::vector<ScriptInput> inputs;
   while (!text.empty()) {
@@ -23,6 +39,7 @@ std::vector<ScriptInput> script_inputs(std::string_view text, const std::map<std
       object = with_variables(std::move(object), variables);
       if (const json* source = source_field(object); source != nullptr && source->is_string())
         inputs.push_back({source->get<std::string>(), object.contains("content")});
+      add_input_files(object, inputs);
       if (const auto mesh = object.find("mesh"); mesh != object.end() && mesh->is_string())
         inputs.push_back({mesh->get<std::string>(), false});
     } catch (const std::exception&) {

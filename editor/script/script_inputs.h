@@ -14,8 +14,8 @@ struct ScriptInput {
   bool content_known;  ///< its line has the field `content`, a hash of the expected content
 };
 
-/// All inputs of a script (imports, environment maps, cage meshes) in the order of its lines, with variables replaced.
-/// Invalid lines are skipped.
+/// All inputs of a script (imports, environment maps, cage meshes, cameras, photographs, masks) in the order of its
+/// lines, with variables replaced. Invalid lines are skipped.
 std::vector<ScriptInput> script_inputs(std::string_view text, const std::map<std::string, std::string>& variables);
 
 }  // namespace rebake

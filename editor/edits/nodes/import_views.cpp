@@ -11,6 +11,7 @@
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/photo_names.h"
+#include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
@@ -25,7 +26,11 @@ void ImportViews::set_input(const EditSource& source) {
 }
 
 std::vector<std::filesystem::path> ImportViews::input_files() const {
-  return camera_format_for(path, format.name).files(path);
+  std::vector<std::filesystem::path> files = camera_format_for(path, format.name).files(path);
+  std::vector<std::string> notes;
+  for (std::filesystem::path& file : capture_files(path, read_cameras(path, format.name, world, notes)))
+    files.push_back(std::move(file));
+  return files;
 }
 
 Outcome apply(const Scene& scene, const ImportViews& edit) {

@@ -1,17 +1,29 @@
 #include "mesh_ops/formats/cameras/photographs.h"
 
+#include "mesh_ops/formats/cameras/mask_images.h"
+
 namespace rebake {
 
 namespace fs = std::filesystem;
 
-fs::path photograph_at(const fs::path& folder, const std::string& name) {
-  const fs::path inside = fs::path(name).lexically_normal();
-  if (inside.empty() || inside.is_absolute() || *inside.begin() == "..") return {};
+namespace {
+
+// The file with this name in a folder or elsewhere; its extension may be missing. Empty if it is not there.
+fs::path existing(const fs::path& folder, const std::string& name) {
+  if (name.empty()) return {};
   for (const char* extension : {"", ".png", ".jpg", ".jpeg", ".JPG", ".PNG"}) {
     std::error_code error;
     if (fs::path path = folder / (name + extension); fs::is_regular_file(path, error)) return path;
   }
   return {};
+}
+
+}  // namespace
+
+fs::path photograph_at(const fs::path& folder, const std::string& name) {
+  const fs::path inside = fs::path(name).lexically_normal();
+  if (inside.empty() || inside.is_absolute() || *inside.begin() == "..") return {};
+  return existing(folder, name);
 }
 
 fs::path capture_folder(const fs::path& camera_file) {
@@ -26,10 +38,15 @@ fs::path capture_folder(const fs::path& camera_file) {
 std::vector<fs::path> capture_files(const fs::path& camera_file, const std::vector<PhotoCamera>& cameras) {
   const fs::path folder = capture_folder(camera_file);
   std::vector<fs::path> files;
-  for (const PhotoCamera& camera : cameras)
-    for (const fs::path& file : {photograph_at(folder, camera.name), photograph_at(folder / "images", camera.name),
-                                 photograph_at(folder, camera.mask.string())})
-      if (!file.empty()) files.push_back(file);
+  const auto add = [&](const fs::path& file) {
+    if (!file.empty()) files.push_back(file);
+  };
+  for (const PhotoCamera& camera : cameras) {
+    add(existing(folder, camera.name));
+    add(existing(folder / "images", camera.name));
+    add(existing(folder, camera.mask.string()));
+  }
+  for (const fs::path& mask : mask_files(cameras, folder, folder / "masks")) add(mask);
   return files;
 }
 

@@ -16,7 +16,7 @@ std::filesystem::path photograph_at(const std::filesystem::path& folder, const s
 /// around COLMAP's sparse/0.
 std::filesystem::path capture_folder(const std::filesystem::path& camera_file);
 
-/// The photographs and masks of a capture that exist, to be protected from being overwritten.
+/// The photographs and masks of a capture that exist, also outside its folder, to be protected from being overwritten.
 std::vector<std::filesystem::path> capture_files(const std::filesystem::path& camera_file,
                                                  const std::vector<PhotoCamera>& cameras);
 

@@ -148,10 +148,28 @@ class OtherPng : public RgbaRows {
   int first_ = 0;
 };
 
+// Whether a PNG has a chunk by which browsers convert colours (gAMA, cHRM, iCCP). They come before the pixels.
+bool has_color_space(std::string_view png) {
+  for (std::size_t at = 8; at + 8 <= png.size();) {
+    const std::string_view name = png.substr(at + 4, 4);
+    if (name == "IDAT") return false;
+    if (name == "gAMA" || name == "cHRM" || name == "iCCP") return true;
+    std::size_t length = 0;
+    for (std::size_t k = 0; k < 4; ++k) length = length << 8 | static_cast<unsigned char>(png[at + k]);
+    at += 12 + length;
+  }
+  return false;
+}
+
 // Opens a feature image, and appends assumptions.
 std::unique_ptr<RgbaRows> open_image(std::string_view bytes, const std::filesystem::path& name, std::size_t image,
                                      const Dialect& dialect, std::vector<std::string>& assumptions,
                                      std::array<bool, 2>& needs_repair) {
+  if (bytes.starts_with("\x89PNG") && has_color_space(bytes)) {
+    assumptions.push_back(name.filename().string() +
+                          " states a colour space, which browsers would apply; it is ignored");
+    needs_repair[image] = true;
+  }
   if (std::unique_ptr<RgbaRows> png = open_rgba_png(bytes, name)) return png;
   if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) {
     needs_repair[image] = true;
@@ -159,7 +177,7 @@ std::unique_ptr<RgbaRows> open_image(std::string_view bytes, const std::filesyst
   }
   std::unique_ptr<OtherPng> other = OtherPng::open(bytes, name, image == 1 ? 4 : dialect.bgr ? 2 : 0);
   assumptions.insert(assumptions.end(), other->assumptions().begin(), other->assumptions().end());
-  needs_repair[image] = other->needs_repair();
+  needs_repair[image] = needs_repair[image] || other->needs_repair();
   return other;
 }
 

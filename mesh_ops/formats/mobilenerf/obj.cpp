@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -187,13 +188,22 @@ class Parser {
     std::size_t first = 0;
     std::vector<Vec3> places;
     for (std::size_t f = 0; f < face_ends_.size(); ++f) {
+      // Tools repeat corners, or the first one at the end.
+      std::vector<std::size_t> kept;
+      for (std::size_t c = first; c < face_ends_[f]; ++c)
+        if (kept.empty() || corners_[c].position != corners_[kept.back()].position) kept.push_back(c);
+      while (kept.size() > 1 && corners_[kept.back()].position == corners_[kept.front()].position) kept.pop_back();
+      if (kept.size() < 3) {
+        kept.resize(face_ends_[f] - first);
+        std::iota(kept.begin(), kept.end(), first);
+      }
       places.clear();
-      for (std::size_t c = first; c < face_ends_[f]; ++c) places.push_back(positions_[corners_[c].position]);
+      for (const std::size_t c : kept) places.push_back(positions_[corners_[c].position]);
       const CutPolygon polygon = cut_face(places, face_lines_[f]);
       if (polygon.shape == PolygonShape::concave) note(Note::concave, face_lines_[f]);
       if (polygon.shape == PolygonShape::crossing) note(Note::crossing, face_lines_[f]);
       for (const auto& triangle : polygon.triangles)
-        for (const std::size_t corner : triangle) cut.push_back(corners_[first + corner]);
+        for (const std::size_t corner : triangle) cut.push_back(corners_[kept[corner]]);
       first = face_ends_[f];
     }
     corners_ = std::move(cut);

@@ -157,6 +157,25 @@ TEST_F(ImportViewsTest, ExportedViewsAreImportedAgain) {
   }
 }
 
+TEST_F(ImportViewsTest, PhotographsOutsideTheFolderAreProtected) {
+  json frames =
+      json::array({{{"file_path", "../photos/a"}, {"transform_matrix", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 2}}}}});
+  std::filesystem::create_directories(path("photos"));
+  std::filesystem::create_directories(path("shoot"));
+  write_text(path("photos/a.png"), "a photograph");
+  write_text(path("shoot/transforms.json"), json{{"w", 80}, {"h", 60}, {"fl_x", 70}, {"frames", frames}}.dump());
+  Document document;
+  act(document, import_of("shoot/transforms.json"));
+  EXPECT_THROW(document.sources().check_file(path("photos/a.png")), FileError);
+}
+
+TEST_F(ImportViewsTest, ExportNeverReplacesAJournal) {
+  Session session;
+  session.edit(read_edit({{"op", "view"}, {"name", "v"}, {"camera", json::object()}}, session.scene()));
+  write_text(path("j"), "{\"rebake_journal\": 3}\n");
+  EXPECT_THROW(run(session, read_action<ExportViewsAction>({{"out", path("j").string()}}, session.scene())), FileError);
+}
+
 TEST_F(ImportViewsTest, ExportErrorsNameTheField) {
   Session session;
   const std::string out = path("out.json").string();

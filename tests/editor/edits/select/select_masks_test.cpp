@@ -7,7 +7,9 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <set>
 
+#include "editor/script/script_inputs.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
@@ -178,6 +180,19 @@ TEST_F(SelectMasksTest, ReplayNoticesChangedMasks) {
   EXPECT_THROW(document_.sources().check_file(path("shoot/masks/photo3.png")), FileError) << "masks are protected";
   write_masks([](int, std::uint8_t label) { return label == 1 ? 255 : 0; });
   EXPECT_THROW(Document::open(path("a.rebake"), {}, {}), Error);
+}
+
+TEST_F(SelectMasksTest, ScriptsProtectMasksAndPhotographsOfLaterLines) {
+  write_masks([](int, std::uint8_t label) { return label == 2 ? 255 : 0; });
+  write_text(path("shoot/photo0.jpg"), "a photograph");
+  const json line = edit();
+  std::set<fs::path> inputs;
+  for (const ScriptInput& input : script_inputs(line.dump() + "\n", {}))
+    inputs.insert(fs::weakly_canonical(input.path));
+  for (const char* file : {"shoot/transforms.json", "shoot/masks/photo3.png", "shoot/photo0.jpg"})
+    EXPECT_TRUE(inputs.contains(fs::weakly_canonical(path(file)))) << file;
+  act(document_, line);
+  EXPECT_THROW(document_.sources().check_file(path("shoot/photo0.jpg")), FileError);
 }
 
 TEST_F(SelectMasksTest, ErrorsNameTheField) {

@@ -245,6 +245,16 @@ TEST_F(FeatureImages, SixteenBitsNeverMakeHoles) {
       ASSERT_EQ(low.at(x, y).feat0[0], old.at(x, y).feat0[0] == 0 ? 0 : 1);
 }
 
+TEST_F(FeatureImages, ColourSpacesAreLeftOut) {
+  std::string png = file("shape0.pngfeat1.png");
+  // A gamma of 1/2.2 after the header, with its checksum.
+  png.insert(33, std::string("\0\0\0\4gAMA\0\0\xb1\x8f\x0b\xfc\x61\x05", 16));
+  write("shape0.pngfeat1.png", png);
+  const auto read = expect_assumed({"shape0.pngfeat1.png states a colour space"});
+  expect_equal(read->sets[0], before_->sets[0]);
+  EXPECT_EQ(read_file(out() / "shape0.pngfeat1.png").find("gAMA"), std::string::npos);
+}
+
 TEST_F(FeatureImages, LosslessWebP) {
   for (const int image : {0, 1})
     rewrite(image, ".webp", 4, "uint8",

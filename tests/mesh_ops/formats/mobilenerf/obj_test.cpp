@@ -63,6 +63,18 @@ TEST(Obj, ReadsWhatModellersWrite) {
   EXPECT_EQ(mesh.assumptions, expected);
 }
 
+TEST(Obj, RepeatedCornersOfPolygonsAreDropped) {
+  const std::string l_shape =
+      "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n"
+      "vt 0 0\nvt 1 0\nvt 1 0.5\nvt 0.5 0.5\nvt 0.5 1\nvt 0 1\n";
+  const auto faces = [&](const std::string& face) { return read_obj(l_shape + "f " + face + "\n", "a.obj").faces; };
+  const auto plain = faces("1/1 2/2 3/3 4/4 5/5 6/6");
+  EXPECT_EQ(plain.size(), 4U);
+  EXPECT_EQ(faces("1/1 2/2 3/3 4/4 5/5 6/6 1/1"), plain) << "closed";
+  EXPECT_EQ(faces("1/1 2/2 2/2 3/3 4/4 4/4 5/5 6/6"), plain) << "doubled";
+  EXPECT_EQ(faces("1/1 1/1 2/2 2/2").size(), 2U) << "without area";
+}
+
 TEST(Obj, CommentsAreNotContinued) {
   const ObjMesh mesh = read_obj("# C:\\models\\\n" + quad + "f 1/1 2/2 \\\n3/3\n", "a.obj");
   EXPECT_EQ(mesh.positions.size(), read_obj(quad, "a.obj").positions.size());
