@@ -49,7 +49,7 @@ class Renderer {
   /// resident. Returns the uploaded share, 0 … 1; 1 also if the GPU cannot hold both scenes. Drawing the new scene
   /// uploads the rest at once.
   double upload_slice(const Scene& scene, double milliseconds);
-  /// Evicts the data uploaded by arrive(), if that scene will not be drawn.
+  /// Evicts the data uploaded by upload_slice(), if that scene will not be drawn.
   void evict_staged();
 
   /// Draws a frame without reading it back. `each_pass`: time each pass (fills pass_ms), otherwise the frame as a

@@ -6,6 +6,8 @@
 #include <OpenMesh/Core/Mesh/PolyMesh_ArrayKernelT.hh>
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <sstream>
 
 #include "mesh_ops/base/error.h"
@@ -45,14 +47,100 @@ void check_counts(const std::filesystem::path& path, const std::string& format, 
     }
   } else if (format == ".off") {
     std::string line;
-    while (std::getline(text, line) && (line.find("OFF") != std::string::npos || line.starts_with('#') || line.empty()))
+    while (std::getline(text, line) && (line.starts_with('#') || line.empty() || line == "OFF" || line == "COFF"))
       continue;
     std::istringstream words(line);
+    if (std::string kind; line.find("OFF") != std::string::npos) words >> kind;
     if (words >> points >> faces) {
       check(points, "points");
       check(faces, "faces");
     }
   }
+}
+
+// The text of a cage file for OpenMesh, which reads coordinates in single precision, and its points in double; without
+// points if only OpenMesh reads them.
+struct CageText {
+  std::string text;
+  std::vector<Vec3> points;
+};
+
+// Reads three coordinates. Throws FileError with the line.
+Vec3 point_of(std::istringstream& words, const std::filesystem::path& path, std::size_t line) {
+  Vec3 point;
+  for (double& coordinate : point) {
+    std::string word;
+    words >> word;
+    if (word.starts_with('+')) word.erase(0, 1);
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), coordinate);
+    if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(coordinate))
+      throw FileError(path, fmt::format("line {}: \"{}\" is not a finite coordinate", line, word));
+  }
+  return point;
+}
+
+// Without materials, for which OpenMesh needs other files.
+CageText obj_text(const std::filesystem::path& path, const std::string& bytes) {
+  CageText result;
+  std::istringstream lines(bytes);
+  std::size_t number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::istringstream words(line);
+    std::string key;
+    words >> key;
+    if (key == "mtllib" || key == "usemtl") continue;
+    if (key == "v") result.points.push_back(point_of(words, path, number));
+    result.text += line + '\n';
+  }
+  return result;
+}
+
+// Without comments and colours. Other variants than OFF and COFF are left to OpenMesh.
+CageText off_text(const std::filesystem::path& path, const std::string& bytes) {
+  std::istringstream lines(bytes);
+  std::size_t number = 0;
+  // The next line with words.
+  const auto next = [&] {
+    for (std::string line; std::getline(lines, line);) {
+      ++number;
+      line.erase(std::min(line.find('#'), line.size()));
+      if (line.find_first_not_of(" \t\r") != std::string::npos) return std::istringstream(line);
+    }
+    throw FileError(path, "is truncated");
+  };
+  std::istringstream words = next();
+  std::string kind;
+  words >> kind;
+  if (kind != "OFF" && kind != "COFF") return {bytes, {}};
+  std::size_t points = 0, faces = 0;
+  if (!(words >> points)) {
+    words = next();
+    words >> points;
+  }
+  if (!(words >> faces)) throw FileError(path, fmt::format("line {}: must state the number of faces", number));
+  CageText result;
+  result.text = fmt::format("OFF\n{} {} 0\n", points, faces);
+  for (std::size_t k = 0; k < points; ++k) {
+    std::istringstream line = next();
+    result.points.push_back(point_of(line, path, number));
+    const Vec3& p = result.points.back();
+    result.text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+  }
+  for (std::size_t k = 0; k < faces; ++k) {
+    std::istringstream line = next();
+    std::size_t corners = 0;
+    line >> corners;
+    if (corners < 3 || corners > points) throw FileError(path, fmt::format("line {}: is not a face", number));
+    result.text += std::to_string(corners);
+    for (std::size_t c = 0; c < corners; ++c) {
+      std::size_t vertex = 0;
+      if (!(line >> vertex)) throw FileError(path, fmt::format("line {}: is not a face", number));
+      result.text += fmt::format(" {}", vertex);
+    }
+    result.text += '\n';
+  }
+  return result;
 }
 
 }  // namespace
@@ -61,7 +149,10 @@ Cage read_cage(const std::filesystem::path& path) {
   const std::string format = format_of(path);
   const std::string bytes = read_file(path, std::uint64_t{1} << 30);
   check_counts(path, format, bytes);
-  std::istringstream text(bytes);
+  const CageText source = format == ".obj"   ? obj_text(path, bytes)
+                          : format == ".off" ? off_text(path, bytes)
+                                             : CageText{bytes, {}};
+  std::istringstream text(source.text);
   Mesh mesh;
   OpenMesh::IO::Options options;
   // OpenMesh drops faces that make a mesh non-manifold and reports that only to its error stream.
@@ -76,6 +167,7 @@ Cage read_cage(const std::filesystem::path& path) {
     const auto& p = mesh.point(v);
     cage.vertices.emplace_back(p[0], p[1], p[2]);
   }
+  if (source.points.size() == cage.vertices.size()) cage.vertices = source.points;
   for (const auto f : mesh.faces()) {
     if (mesh.valence(f) != 3) throw FileError(path, "has faces that are not triangles; triangulate it first");
     Face face{};

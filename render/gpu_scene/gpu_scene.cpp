@@ -24,7 +24,7 @@ std::vector<GpuCluster> clusters_of(const Soup& soup, const std::vector<Face>& f
   return clusters;
 }
 
-// In bytes: the overhead per surface or mesh, and the size up to which arrive() leaves a change to update().
+// In bytes: the overhead per surface or mesh, and the size up to which upload_slice() leaves a change to update().
 constexpr double each_upload = 65536, at_once = 8e6;
 
 // Surfaces that a scene no longer needs. Sets for which serves() is true can take them over.
@@ -380,7 +380,7 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
   // Evicts before uploading, to limit the peak of memory.
   for (const MeshKey& key : change.released_meshes) meshes_.erase(key);
   for (const SurfaceKey& key : change.released_surfaces) surfaces_.erase(key);
-  std::set<SurfaceKey> came;  // taken over from arrive()
+  std::set<SurfaceKey> came;  // taken over from upload_slice()
   for (const TextureSet& set : change.surfaces) {
     const SurfaceKey key = surface_key(set, coded);
     auto arrived = staged_surfaces_.extract(key);

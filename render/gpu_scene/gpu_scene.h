@@ -68,7 +68,7 @@ class GpuScene {
   /// `milliseconds`, and at least one piece. Returns the uploaded share, 0 … 1. Small changes are left to update(),
   /// which takes over the uploaded data.
   double upload_slice(const Scene& scene, bool coded, double milliseconds);
-  /// Evicts the data uploaded by arrive() for a scene that was not drawn.
+  /// Evicts the data uploaded by upload_slice() for a scene that was not drawn.
   void evict_staged();
   /// Prepares data on the CPU that update() will upload. Callable from any thread; update() prepares the rest.
   void prepare(const Scene& scene, bool coded);

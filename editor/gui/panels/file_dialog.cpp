@@ -48,14 +48,14 @@ constexpr Question questions[] = {
      "Export", ""},
     {FileDialogPurpose::screenshot, "Screenshot", "A picture of the scene, without grid and handles.", "Write", ".png",
      ".png .jpg .jpeg .webp .exr"},
-    {FileDialogPurpose::turntable, "Turntable", "A folder for images of a full orbit: 000.png, 001.png, …", "Write",
+    {FileDialogPurpose::turntable, "Turntable", "A folder for pictures of a full orbit: 000.png, 001.png, …", "Write",
      ""},
-    {FileDialogPurpose::camera_path, "Camera path", "A folder for images along a path through the stored views.",
+    {FileDialogPurpose::camera_path, "Camera path", "A folder for pictures along a path through the stored views.",
      "Write", ""},
     {FileDialogPurpose::save_script, "Save as script", "A script file with one edit per line.", "Save", ".jsonl"},
     {FileDialogPurpose::run_script, "Run script", "A script file with one edit or action per line.", "Run", ".jsonl"},
-    {FileDialogPurpose::light_picture, "Environment map", "An equirectangular image, twice as wide as high.", "Use", "",
-     ".exr .hdr .png .jpg .jpeg .tif .tiff .webp"},
+    {FileDialogPurpose::light_picture, "Environment map", "An equirectangular picture, twice as wide as high.", "Use",
+     "", ".exr .hdr .png .jpg .jpeg .tif .tiff .webp"},
 };
 
 const Question& question_of(FileDialogPurpose kind) {
@@ -94,7 +94,7 @@ std::string problem_with(const fs::path& path, FileDialogPurpose asked) {
   if (writes && !fs::is_directory(parent, error)) return "Folder not found: " + parent.string() + ".";
   if (!writes && !fs::exists(path, error)) return "File not found: " + path.string() + ".";
   if (asked == FileDialogPurpose::light_picture)
-    return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file. Choose an image file.";
+    return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file. Choose a picture file.";
   if (!writes && fs::is_directory(path, error) && !holds_scene(path))
     return path.filename().string() + " is not a scene in a known format.";
   return "";

@@ -16,7 +16,7 @@ namespace {
 constexpr std::pair<const char*, const char*> pointer_lines[] = {
     {"Middle button", "Orbit"},
     {"Shift + middle, or right button", "Pan"},
-    {"Wheel", "Zoom to the pointer"},
+    {"Wheel", "Zoom to cursor"},
     {"Alt + left button", "Orbit with any tool"},
     {"Double click", "Set the orbit centre"},
     {"Right click", "Context menu"},

@@ -138,7 +138,7 @@ void draw_source(EditorContext& editor, const SceneLight& light) {
   int source = static_cast<int>(light.source);
   ui::label("Light");
   if (ui::choice("source", source,
-                 {"Estimated##estimated", "Uniform##uniform", "Sky##sky", "Image##environment-map"})) {
+                 {"Estimated##estimated", "Uniform##uniform", "Sky##sky", "Picture##environment-map"})) {
     SceneLight changed = light;
     changed.source = static_cast<SceneLight::Source>(source);
     if (changed.source == SceneLight::Source::picture && !changed.picture)

@@ -142,7 +142,7 @@ void PlainPreview::draw_table(Jobs& jobs) {
   ImGui::TableSetupColumn("decoder", 0, 3.2F);
   ImGui::TableSetupColumn("width");
   ImGui::TableSetupColumn("texels dB", 0, 1.4F);
-  ImGui::TableSetupColumn("image dB", 0, 1.2F);
+  ImGui::TableSetupColumn("picture dB", 0, 1.2F);
   ImGui::TableSetupColumn("ms per frame", 0, 1.6F);
   ImGui::TableSetupColumn("seconds", 0, 1.2F);
   ImGui::TableHeadersRow();
@@ -246,16 +246,17 @@ std::optional<PlainPreview::Choice> PlainPreview::draw(Jobs& jobs) {
     ui::muted("One decoder represents the scene exactly. No fit is needed.");
     announce::item("exact");
   } else {
-    ui::muted("One plain folder approximates the scene. Drag across the image to compare.");
+    ui::muted("One plain folder approximates the scene. Drag across the picture to compare.");
     const float most = ImGui::GetContentRegionAvail().y -
                        ImGui::GetTextLineHeightWithSpacing() * (static_cast<float>(measured_->rows.size()) + 4);
     const float aspect = static_cast<float>(measured_->view.width) / static_cast<float>(measured_->view.height);
     draw_wipe(std::clamp(most * aspect, px(160), ImGui::GetContentRegionAvail().x));
     draw_table(jobs);
-    ui::muted(fmt::format(
-        "Texels: PSNR of sampled texels. Image: PSNR of this image, in which texels are blended. The original takes "
-        "{:.1f} ms per frame.",
-        measured_->reference_ms));
+    ui::muted(
+        fmt::format("Texels: PSNR of sampled texels. Picture: PSNR of this picture, in which texels are blended. The "
+                    "original takes "
+                    "{:.1f} ms per frame.",
+                    measured_->reference_ms));
   }
   ImGui::EndChild();
   const float width = px(120);

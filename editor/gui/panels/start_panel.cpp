@@ -65,7 +65,7 @@ void draw_start(EditorContext& editor, Thumbnails& thumbnails, const ImVec2& mid
   ImGui::PopStyleColor();
   const announce::Part part("start");
   ImGui::PushFont(fonts().heading);
-  ImGui::TextUnformatted("Open a baked scene");
+  ImGui::TextUnformatted("Open a scene");
   ImGui::PopFont();
   if (!editor.now->done.empty()) ui::muted("The scene is empty. Undo restores removed nodes.");
   ui::muted("Drop folders here, or choose them. Several scenes can be combined.");

@@ -17,7 +17,7 @@ namespace {
 
 std::string last_error = "unknown";  // global because GLFW's error callback has no user pointer
 
-constexpr const char* without_window = "commands that need no window: rebake run, render, export, batch";
+constexpr const char* without_window = "subcommands that need no window: rebake run, render, export, batch";
 
 class WindowContext final : public gl::Context {
  public:

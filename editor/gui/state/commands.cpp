@@ -229,7 +229,7 @@ void store_view(ToolContext& editor, const std::string& name) {
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
-      {"File", "Open...", "Ctrl+O", "Ctrl+O", "Opens a baked scene, a scene folder or a project.", always,
+      {"File", "Open...", "Ctrl+O", "Ctrl+O", "Opens a MobileNeRF folder, a Rebake scene or a project.", always,
        ask<FileDialogPurpose::open>},
       {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_scene, save},
       {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", "Saves every step to another file.", has_scene,
@@ -239,12 +239,12 @@ const std::vector<Command>& command_table() {
       {"File", "Export...", "Ctrl+E", "Ctrl+E",
        "Writes a MobileNeRF folder, or a Rebake scene if one folder cannot hold it.", has_scene,
        ask<FileDialogPurpose::export_folder>},
-      {"File", "Screenshot...", "F12", "F12", "Saves this view as an image.", has_scene,
+      {"File", "Screenshot...", "F12", "F12", "Saves this view as a picture.", has_scene,
        ask<FileDialogPurpose::screenshot>},
-      {"File", "Turntable...", "", "", "Renders images or a video of a full orbit around the scene.", has_scene,
+      {"File", "Turntable...", "", "", "Renders pictures or a video of a full orbit around the scene.", has_scene,
        ask<FileDialogPurpose::turntable>},
-      {"File", "Camera path...", "", "", "Renders images or a video along a path through the stored views.", has_views,
-       ask<FileDialogPurpose::camera_path>},
+      {"File", "Camera path...", "", "", "Renders pictures or a video along a path through the stored views.",
+       has_views, ask<FileDialogPurpose::camera_path>},
       {"File", "Save as script...", "", "", "Saves the steps as a script that can be replayed on other scenes.",
        has_scene, ask<FileDialogPurpose::save_script>},
       {"File", "Run script...", "", "", "Runs a script on this scene.", always, ask<FileDialogPurpose::run_script>},
