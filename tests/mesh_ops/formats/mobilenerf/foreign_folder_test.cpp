@@ -1,4 +1,4 @@
-// Folders that other tools and people have changed open, say what was assumed, and are repaired by an export.
+// Folders that other tools have changed open with a list of assumptions, and an export repairs them.
 #include <gtest/gtest.h>
 
 #include <fstream>
