@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "mesh_ops/base/shelf_packer.h"
 #include "mesh_ops/base/union_find.h"
 #include "mesh_ops/index/footprint.h"
 
@@ -25,28 +26,21 @@ int texel_at(double coordinate, int size) {
   return texel_within(static_cast<double>(static_cast<float>(coordinate)), size);
 }
 
-// Shelf packing, tallest rectangles first. Returns the height.
-int place_in_rows(std::vector<PackedRect>& rects, int width) {
+// Packs the tallest rectangles first. Returns the height; 0 if they do not fit into one texture.
+int place_in_shelves(std::vector<PackedRect>& rects, int width) {
   std::vector<std::uint32_t> order(rects.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return rects[a].height > rects[b].height; });
-  // Texel (0, 0) stays free, for vertices without a rectangle.
-  int x = 1, y = 0, row = 1;
+  ShelfPacker packer(width, widest);
+  packer.add(1, 1);  // texel (0, 0) stays free, for vertices without a rectangle
   for (const std::uint32_t k : order) {
     PackedRect& rect = rects[k];
-    if (x + rect.width > width) {
-      y += row;
-      x = 0;
-      row = 0;
-    }
-    if (y + rect.height > widest) return widest + 1;
-    rect.place_x = static_cast<std::uint16_t>(x);
-    rect.place_y = static_cast<std::uint16_t>(y);
-    x += rect.width;
-    row = std::max<int>(row, rect.height);
+    const ShelfPacker::Place place = packer.add(rect.width, rect.height);
+    rect.place_x = static_cast<std::uint16_t>(place.x);
+    rect.place_y = static_cast<std::uint16_t>(place.y);
   }
-  return y + row;
+  return packer.pages().size() == 1 ? packer.pages().front().height : 0;
 }
 
 }  // namespace
@@ -110,9 +104,8 @@ TexelPacking pack_texels(const TextureSet& set, const std::vector<std::uint8_t>&
   }
   const double all = static_cast<double>(width) * height;
   packing.width = std::clamp(static_cast<int>(std::ceil(std::sqrt(area))), std::max(widest_rect, 2), widest);
-  if (area < max_packed * all) packing.height = place_in_rows(packing.rects, packing.width);
-  if (area >= max_packed * all || packing.height > widest ||
-      static_cast<double>(packing.width) * packing.height >= max_packed * all) {
+  packing.height = area < max_packed * all ? place_in_shelves(packing.rects, packing.width) : 0;
+  if (packing.height == 0 || static_cast<double>(packing.width) * packing.height >= max_packed * all) {
     packing.whole = true;
     packing.width = width;
     packing.height = height;

@@ -11,14 +11,12 @@
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/support.h"
 #include "editor/gui/app/legend.h"
-#include "editor/gui/state/lost_work.h"
 #include "editor/gui/state/navigation.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/style.h"
 #include "editor/gui/view/axes.h"
 #include "editor/gui/view/grid.h"
 #include "render/image.h"
-#include "render/thumbnail.h"
 
 namespace rebake {
 
@@ -82,7 +80,7 @@ bool Viewport::moving() const { return Clock::now() - moved_at_ < settle_time; }
 double Viewport::next_frame_in(const EditorContext& editor) const {
   if (editor.jobs.film && editor.jobs.film->waits()) return 0.1;
   if (arrival_) return 0;
-  if (editor.jobs.film || editor.view.flying || (thumbnails_.wants() && !moving() && editor.at_rest())) return 0;
+  if (editor.jobs.film || editor.view.flying || (thumbnails().wants() && !moving() && editor.at_rest())) return 0;
   // A reduced picture is followed by one at full quality.
   if (!moving())
     return made_ && (made_->view.width != made_->shown_width || made_->view.samples != editor.view.samples) ? 0 : -1;
@@ -258,7 +256,7 @@ void Viewport::picture(EditorContext& editor) {
   if (made_ && same_scene(made_->scene, wanted.scene) && made_->lighting == wanted.lighting &&
       same_view(made_->view, view) && made_->guides == wanted.guides && made_->each_pass == each_pass_ &&
       made_->wipe == editor.view.wipe) {
-    if (!quick) write_recent_thumbnail(editor);
+    if (!quick) write_thumbnails(editor);
     return;
   }
   // Set before drawing, so that an error is reported only once.
@@ -292,45 +290,15 @@ void Viewport::picture(EditorContext& editor) {
   }
   texture_ = shown.texture;
   drew_ = true;
-  if (!quick) write_recent_thumbnail(editor);
+  if (!quick) write_thumbnails(editor);
 }
 
-// Writes the thumbnail that the recovery dialog shows: after each step, but at most every two seconds.
-void Viewport::write_recovery_thumbnail(const EditorContext& editor) {
-  constexpr std::chrono::seconds min_time{2};
-  if (editor.now->journal.empty() || editor.scene().roots.empty()) return;
-  const bool other = journal_of_ != editor.now->journal;
-  if (!other && (journal_step_ == editor.now->steps_done || Clock::now() - journal_at_ < min_time)) return;
-  journal_of_ = editor.now->journal;
-  journal_step_ = editor.now->steps_done;
-  journal_at_ = Clock::now();
-  try {
-    const std::filesystem::path file = thumbnail_path(editor.now->journal);
-    std::filesystem::create_directories(file.parent_path());
-    write_picture(thumbnail_of(renderer_.shown_image(), Thumbnails::width, Thumbnails::height), file, {});
-  } catch (const std::exception&) {
-    // The dialog then shows an icon instead.
-  }
-}
-
-// Writes the thumbnail of the file that was just opened or saved, for the list of recent files. Uses the first picture
-// at full quality, even if the view still moves: a fast driver does not draw it again when the view rests.
-void Viewport::write_recent_thumbnail(const EditorContext& editor) {
+// Thumbnails use the first picture at full quality, even if the view still moves: a fast driver does not draw it again
+// when the view rests.
+void Viewport::write_thumbnails(const EditorContext& editor) {
   if (editor.view.flying || editor.preview || arrival_ || texture_ == 0) return;
-  write_recovery_thumbnail(editor);
-  const std::vector<Edit>& done = editor.now->done;
-  const bool imported = done.size() == 1 && done.front().is<Import>() && !editor.settings.recent.empty();
-  const std::string of = !editor.project.path.empty() ? (editor.project.unsaved() ? "" : editor.project.path.string())
-                         : imported                   ? editor.settings.recent.front()
-                                                      : "";
-  if (of.empty() || (of == recent_thumbnail_of_ && kept_step_ == editor.now->steps_done)) return;
-  recent_thumbnail_of_ = of;
-  kept_step_ = editor.now->steps_done;
-  try {
-    thumbnails_.keep(of, editor.settings.recent, renderer_.shown_image());
-  } catch (const std::exception&) {
-    // Without a writable cache the list has no thumbnails; nothing else depends on them.
-  }
+  scene_thumbnails_.write_for_recovery(editor, renderer_);
+  scene_thumbnails_.write_for_recent_files(editor, renderer_);
 }
 
 void Viewport::frame_took(double ms) {
@@ -462,9 +430,9 @@ void Viewport::render(EditorContext& editor) {
     moved_at_ = Clock::now();
   }
   write_pictures(editor);
-  if (thumbnails_.wants() && !moving() && editor.at_rest() && !tool(editor).busy()) {
+  if (thumbnails().wants() && !moving() && editor.at_rest() && !tool(editor).busy()) {
     made_.reset();
-    thumbnails_.draw_one(renderer_, with_viewport_background(editor.scene(), editor));
+    thumbnails().draw_one(renderer_, with_viewport_background(editor.scene(), editor));
   }
   picture(editor);
 }

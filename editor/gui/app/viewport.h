@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 
+#include "editor/gui/app/scene_thumbnails.h"
 #include "editor/gui/panels/panels.h"
 #include "editor/gui/tools/tool.h"
 
@@ -43,7 +44,8 @@ class Viewport {
   const FrameReport& report() const { return report_; }
   /// Whether each render pass is timed separately, which slows the frame down.
   bool& each_pass() { return each_pass_; }
-  Thumbnails& thumbnails() { return thumbnails_; }
+  Thumbnails& thumbnails() { return scene_thumbnails_.of_recent_files(); }
+  const Thumbnails& thumbnails() const { return scene_thumbnails_.of_recent_files(); }
   /// The document's scene, with the background that the viewport shows.
   static Scene drawn(const EditorContext& editor);
 
@@ -79,8 +81,7 @@ class Viewport {
   Box drawn_bounds(const EditorContext& editor) const;
   bool draw_wipe(EditorContext& editor, ImDrawList& list, const ImVec2& origin, const Pointer& pointer);
   void write_pictures(EditorContext& editor);
-  void write_recent_thumbnail(const EditorContext& editor);
-  void write_recovery_thumbnail(const EditorContext& editor);
+  void write_thumbnails(const EditorContext& editor);
   bool moving() const;
 
   Vec2 right_pressed_at_{0, 0};
@@ -101,12 +102,7 @@ class Viewport {
   unsigned before_texture_ = 0;          ///< OpenGL texture of the imported scene's picture
   ToolKind last_tool_ = ToolKind::pick;  ///< tool of the previous frame
   unsigned texture_ = 0;                 ///< OpenGL texture of the picture; 0: it could not be drawn
-  Thumbnails thumbnails_;
-  std::string recent_thumbnail_of_;   ///< file or folder of the last thumbnail in the list of recent files
-  std::size_t kept_step_ = 0;         ///< number of steps of history at that thumbnail
-  std::filesystem::path journal_of_;  ///< journal of the last recovery thumbnail
-  std::size_t journal_step_ = 0;      ///< number of steps of history at the last recovery thumbnail
-  Clock::time_point journal_at_;      ///< time of the last recovery thumbnail
+  SceneThumbnails scene_thumbnails_;
   bool each_pass_ = false;
   bool drew_ = false;  ///< a new picture was drawn in this frame
   bool orbiting_ = false, panning_ = false, wiping_ = false;

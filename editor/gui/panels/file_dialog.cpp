@@ -16,6 +16,7 @@
 #include "editor/edits/nodes/light.h"
 #include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
+#include "editor/gui/panels/file_dialog_purpose.h"
 #include "editor/gui/platform/child_process.h"
 #include "editor/gui/state/navigation.h"
 #include "editor/gui/ui/announce.h"
@@ -31,77 +32,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Question {
-  FileDialogPurpose kind;
-  const char* title;
-  const char* hint;
-  const char* action;           ///< label of the primary button
-  const char* ending;           ///< extension added to names with none of `listed`; empty for folders and for reading
-  const char* listed = ending;  ///< extensions of the listed files, separated by spaces
-};
-constexpr Question questions[] = {
-    {FileDialogPurpose::open, "Open", "A MobileNeRF folder, a Rebake scene, or a project (.rebake).", "Open", "",
-     ".rebake"},
-    {FileDialogPurpose::save_project, "Save project", "A file with all steps of the history.", "Save", ".rebake"},
-    {FileDialogPurpose::save_scene, "Save Rebake scene", "A folder with all nodes, without the history.", "Save", ""},
-    {FileDialogPurpose::export_folder, "Export", "A MobileNeRF folder, or a Rebake scene if one folder cannot hold it.",
-     "Export", ""},
-    {FileDialogPurpose::screenshot, "Screenshot", "A picture of the scene, without grid and handles.", "Write", ".png",
-     ".png .jpg .jpeg .webp .exr"},
-    {FileDialogPurpose::turntable, "Turntable", "A folder for pictures of a full orbit: 000.png, 001.png, …", "Write",
-     ""},
-    {FileDialogPurpose::camera_path, "Camera path", "A folder for pictures along a path through the stored views.",
-     "Write", ""},
-    {FileDialogPurpose::save_script, "Save as script", "A script file with one edit per line.", "Save", ".jsonl"},
-    {FileDialogPurpose::run_script, "Run script", "A script file with one edit or action per line.", "Run", ".jsonl"},
-    {FileDialogPurpose::light_picture, "Environment map", "An equirectangular picture, twice as wide as high.", "Use",
-     "", ".exr .hdr .png .jpg .jpeg .tif .tiff .webp"},
-};
-
-const Question& question_of(FileDialogPurpose kind) {
-  for (const Question& question : questions)
-    if (question.kind == kind) return question;
-  return questions[0];
-}
-
-// Extensions of the listed files, separated by spaces.
-std::string listed_endings(FileDialogPurpose asked) {
-  std::string endings = question_of(asked).listed;
-  if (asked == FileDialogPurpose::open)
-    for (const Format& format : formats())
-      if (format.read != nullptr && !format.is_folder) endings += fmt::format(" {}", format.marker);
-  return endings;
-}
-
 // The fields of an import that describe the folder.
 std::vector<FieldInfo> import_fields() {
   std::vector<FieldInfo> fields = edit_type<Import>().fields();
   std::erase_if(fields, [](const FieldInfo& field) { return !describes_folder(field); });
   return fields;
-}
-
-bool reads(FileDialogPurpose asked) {
-  return asked == FileDialogPurpose::open || asked == FileDialogPurpose::run_script ||
-         asked == FileDialogPurpose::light_picture;
-}
-
-// Checks a path before it is used. Returns an error message; empty if the path is usable.
-std::string problem_with(const fs::path& path, FileDialogPurpose asked) {
-  const bool writes = !reads(asked);
-  std::error_code error;
-  if (path.empty()) return "Type or choose a path.";
-  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (writes && !fs::is_directory(parent, error)) return "Folder not found: " + parent.string() + ".";
-  if (!writes && !fs::exists(path, error)) return "File not found: " + path.string() + ".";
-  if (asked == FileDialogPurpose::light_picture)
-    return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file. Choose a picture file.";
-  if (!writes && fs::is_directory(path, error) && !holds_scene(path))
-    return path.filename().string() + " is not a scene in a known format.";
-  return "";
-}
-
-bool makes_film(FileDialogPurpose asked) {
-  return asked == FileDialogPurpose::turntable || asked == FileDialogPurpose::camera_path;
 }
 
 struct Bookmark {
@@ -153,7 +88,7 @@ void FileDialog::begin(const EditorContext& editor) {
   if (kept || reads(asked_) || editor.scene().roots.empty()) return;
   // Suggest a name.
   const std::string title = editor.scene().roots.front()->name;
-  const std::string ending = question_of(asked_).ending;
+  const std::string ending = text_of(asked_).ending;
   if (asked_ == FileDialogPurpose::export_folder) path_ += title + "-edited";
   if (makes_film(asked_)) path_ += title + (asked_ == FileDialogPurpose::turntable ? "-turntable" : "-path");
   if (!ending.empty()) path_ += title + ending;
@@ -224,7 +159,7 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
 void FileDialog::draw_desktop_buttons(const EditorContext& editor, const std::string& ending) {
   if (!DesktopFileDialog::there()) return;
   using Kind = DesktopFileDialog::Kind;
-  const Question& question = question_of(editor.dialogs.path);
+  const FileDialogText& question = text_of(editor.dialogs.path);
   const auto offer = [&](const std::string& label, const char* id, Kind kind, const char* help,
                          const std::string& files) {
     ImGui::BeginDisabled(desktop_ != nullptr);
@@ -321,10 +256,9 @@ FileDialog::Form FileDialog::form_for(const EditorContext& editor) {
   form.film = makes_film(editor.dialogs.path);
   form.pictures = form.film || editor.dialogs.path == FileDialogPurpose::screenshot;
   form.writes = !reads(editor.dialogs.path);
-  form.ending = form.film && video_ ? ".mp4" : question_of(editor.dialogs.path).ending;
+  form.ending = form.film && video_ ? ".mp4" : text_of(editor.dialogs.path).ending;
   if (form.exports && !export_.format().is_folder) form.ending = export_.format().marker;
-  form.endings =
-      form.ending == question_of(editor.dialogs.path).ending ? listed_endings(editor.dialogs.path) : form.ending;
+  form.endings = form.ending == text_of(editor.dialogs.path).ending ? listed_endings(editor.dialogs.path) : form.ending;
   // If all top-level nodes are picked, the option would change nothing.
   form.offers_picked = (form.pictures || form.exports) && !editor.active.empty() &&
                        editor.active_tops().size() < editor.scene().roots.size();
@@ -457,7 +391,7 @@ void FileDialog::draw(EditorContext& editor, Thumbnails& thumbnails) {
     desktop_.reset();
     return;
   }
-  const Question& question = question_of(editor.dialogs.path);
+  const FileDialogText& question = text_of(editor.dialogs.path);
   if (asked_ != editor.dialogs.path) begin(editor);
   if (!begin_popup(question.title)) return;
   const announce::Part part("dialog");

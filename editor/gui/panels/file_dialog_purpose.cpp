@@ -1,0 +1,72 @@
+#include "editor/gui/panels/file_dialog_purpose.h"
+
+#include <fmt/format.h>
+
+#include "editor/gui/panels/folder_list.h"
+#include "mesh_ops/formats/formats.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr FileDialogText questions[] = {
+    {FileDialogPurpose::open, "Open", "A MobileNeRF folder, a Rebake scene, or a project (.rebake).", "Open", "",
+     ".rebake"},
+    {FileDialogPurpose::save_project, "Save project", "A file with all steps of the history.", "Save", ".rebake"},
+    {FileDialogPurpose::save_scene, "Save Rebake scene", "A folder with all nodes, without the history.", "Save", ""},
+    {FileDialogPurpose::export_folder, "Export", "A MobileNeRF folder, or a Rebake scene if one folder cannot hold it.",
+     "Export", ""},
+    {FileDialogPurpose::screenshot, "Screenshot", "A picture of the scene, without grid and handles.", "Write", ".png",
+     ".png .jpg .jpeg .webp .exr"},
+    {FileDialogPurpose::turntable, "Turntable", "A folder for pictures of a full orbit: 000.png, 001.png, …", "Write",
+     ""},
+    {FileDialogPurpose::camera_path, "Camera path", "A folder for pictures along a path through the stored views.",
+     "Write", ""},
+    {FileDialogPurpose::save_script, "Save as script", "A script file with one edit per line.", "Save", ".jsonl"},
+    {FileDialogPurpose::run_script, "Run script", "A script file with one edit or action per line.", "Run", ".jsonl"},
+    {FileDialogPurpose::light_picture, "Environment map", "An equirectangular picture, twice as wide as high.", "Use",
+     "", ".exr .hdr .png .jpg .jpeg .tif .tiff .webp"},
+};
+
+}  // namespace
+
+const FileDialogText& text_of(FileDialogPurpose kind) {
+  for (const FileDialogText& question : questions)
+    if (question.kind == kind) return question;
+  return questions[0];
+}
+
+std::string listed_endings(FileDialogPurpose kind) {
+  std::string endings = text_of(kind).listed;
+  if (kind == FileDialogPurpose::open)
+    for (const Format& format : formats())
+      if (format.read != nullptr && !format.is_folder) endings += fmt::format(" {}", format.marker);
+  return endings;
+}
+
+bool reads(FileDialogPurpose kind) {
+  return kind == FileDialogPurpose::open || kind == FileDialogPurpose::run_script ||
+         kind == FileDialogPurpose::light_picture;
+}
+
+bool makes_film(FileDialogPurpose kind) {
+  return kind == FileDialogPurpose::turntable || kind == FileDialogPurpose::camera_path;
+}
+
+std::string problem_with(const fs::path& path, FileDialogPurpose kind) {
+  const bool writes = !reads(kind);
+  std::error_code error;
+  if (path.empty()) return "Type or choose a path.";
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (writes && !fs::is_directory(parent, error)) return "Folder not found: " + parent.string() + ".";
+  if (!writes && !fs::exists(path, error)) return "File not found: " + path.string() + ".";
+  if (kind == FileDialogPurpose::light_picture)
+    return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file. Choose a picture file.";
+  if (!writes && fs::is_directory(path, error) && !holds_scene(path))
+    return path.filename().string() + " is not a scene in a known format.";
+  return "";
+}
+
+}  // namespace rebake
