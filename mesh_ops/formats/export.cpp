@@ -175,6 +175,12 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
   std::vector<std::string> bent;
   const std::vector<Node> nodes = merged_for_export(without_bends(scene, &bent), options.layout, &reordered);
   if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
+  for (const Node& node : nodes)
+    if (node.object->decoder->rule != ColorRule::network)
+      throw EditError(
+          fmt::format("\"{}\" has no MobileNeRF decoder: export with plain, which fits one, or save a "
+                      "Rebake scene",
+                      node.name));
   ExportReport report;
   report.folders = nodes.size();
   report.one_folder = nodes.size() == 1;

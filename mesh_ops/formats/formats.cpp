@@ -1,12 +1,14 @@
 #include "mesh_ops/formats/formats.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/mobilenerf/baked_files.h"
+#include "mesh_ops/formats/nerf2mesh/nerf2mesh_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder_files.h"
 #include "mesh_ops/formats/scene_files.h"
@@ -40,6 +42,50 @@ ExportReport write_rebake(const Scene& scene, const fs::path& folder, const Expo
   return report;
 }
 
+// One node, which turns the capture's frame.
+Scene read_nerf2mesh(const fs::path& folder, const ReadOptions& /*stated by the format*/, const Progress& progress) {
+  Node node;
+  node.name = folder_title(folder);
+  node.object = read_nerf2mesh_folder(folder, progress);
+  node.to_parent = nerf2mesh_to_y_up();
+  return with_added({}, node, NodeId::none, 0);
+}
+
+ExportReport write_nerf2mesh(const Scene& scene, const fs::path& folder, const ExportOptions& options,
+                             const Progress& progress) {
+  if (options.layout) throw FieldError("layout", "does not apply to nerf2mesh folders; leave it out");
+  if (options.page_side) throw FieldError("page_size", "does not apply to nerf2mesh folders; leave it out");
+  Scene turned;
+  for (const NodePtr& root : scene.roots) {
+    Node node = *root;
+    node.to_parent = nerf2mesh_to_y_up().inverse(Eigen::Isometry) * node.to_parent;
+    turned.roots.push_back(std::make_shared<const Node>(std::move(node)));
+  }
+  std::vector<std::string> bent;
+  const std::vector<Node> nodes = merged_for_export(without_bends(turned, &bent), std::nullopt);
+  if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
+  if (nodes.size() > 1)
+    throw EditError(
+        fmt::format("a nerf2mesh folder holds one network in one orientation, but the scene has {}: export "
+                    "single nodes, or save a Rebake scene",
+                    nodes.size()));
+  ExportReport report;
+  if (!bent.empty())
+    report.notes.push_back(fmt::format(
+        "the format cannot store how bends rotate colours: {} keeps the colours from before the bend; save keeps the "
+        "rotations",
+        fmt::join(bent, ", ")));
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->object && !placed.visible)
+      report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
+  AtomicFolder out(folder, options.sources, refuse_foreign_content);
+  write_nerf2mesh_folder(out, *nodes.front().object, report.notes, progress);
+  out.commit();
+  return report;
+}
+
+constexpr Format::Folder nerf2mesh_folder{has_nerf2mesh_decoder, is_nerf2mesh_file_name,
+                                          [](const fs::path&) { return std::set<std::string>(); }};
 constexpr Format::Folder mobilenerf_folder{has_baked_decoder, is_baked_file_name,
                                            [](const fs::path&) { return std::set<std::string>(); }};
 constexpr Format::Folder rebake_folder{has_scene_json, [](const std::string& name) { return name == "scene.json"; },
@@ -47,11 +93,15 @@ constexpr Format::Folder rebake_folder{has_scene_json, [](const std::string& nam
 
 constexpr Format table[] = {
     {"mobilenerf", "MobileNeRF", "for the published viewers", "mlp.json", true, true,
-     [](const fs::path& path) { return fs::exists(path / "mlp.json") && !fs::exists(path / "scene.json"); },
+     [](const fs::path& path) {
+       return fs::exists(path / "mlp.json") && !fs::exists(path / "scene.json") && !is_nerf2mesh_folder(path);
+     },
      read_mobilenerf, baked_files, export_scene, &mobilenerf_folder},
     {"rebake", "Rebake scene", "keeps every node", "scene.json", true, true,
      [](const fs::path& path) { return fs::exists(path / "scene.json"); }, read_rebake, scene_folder_files,
      write_rebake, &rebake_folder},
+    {nerf2mesh_format, "nerf2mesh", "only scenes of such folders", "mlp.json", true, true, is_nerf2mesh_folder,
+     read_nerf2mesh, nerf2mesh_files, write_nerf2mesh, &nerf2mesh_folder},
 };
 
 }  // namespace

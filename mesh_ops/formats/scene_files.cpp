@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "mesh_ops/base/error.h"
@@ -70,13 +71,17 @@ void refuse_foreign_content(const fs::path& folder) {
                                         path.lexically_relative(folder).string()));
   };
   std::set<std::string> own;
-  bool known = false;
+  std::map<std::string, bool> markers;  // whether some format that has this marker finds it genuine
   for (const Format& format : formats()) {
     if (format.folder == nullptr || !fs::exists(folder / format.marker)) continue;
-    if (!format.folder->is_genuine(folder)) refuse(folder / format.marker);
-    known = true;
+    bool& genuine = markers[format.marker];
+    if (!format.folder->is_genuine(folder)) continue;
+    genuine = true;
     own.merge(format.folder->own_folders(folder));
   }
+  for (const auto& [marker, genuine] : markers)
+    if (!genuine) refuse(folder / marker);
+  const bool known = !markers.empty();
   const auto is_own_file = [](const std::string& name) {
     return std::ranges::any_of(
         formats(), [&](const Format& format) { return format.folder != nullptr && format.folder->is_own_file(name); });

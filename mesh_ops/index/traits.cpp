@@ -61,6 +61,13 @@ TexelTraits looks_of(const TextureSet& set, const TexelReader& reader, std::size
   return looks;
 }
 
+// Sets the colours of triangles with opaque texels; one column per triangle.
+void set_colors(const Eigen::MatrixXf& colors, TexelTraits* looks) {
+  for (Eigen::Index i = 0; i < colors.cols(); ++i)
+    if (looks[i].opacity > 0)
+      for (Eigen::Index k = 0; k < 3; ++k) looks[i].color[static_cast<std::size_t>(k)] = colors(k, i);
+}
+
 // Decodes the colours of a batch of triangles, one per matrix column.
 void decode_colors(const Decoder& decoder, TexelTraits* looks, Eigen::Index count) {
   const Eigen::MatrixXf w0 = decoder.weights0.cast<float>().transpose();
@@ -71,6 +78,7 @@ void decode_colors(const Decoder& decoder, TexelTraits* looks, Eigen::Index coun
   Eigen::MatrixXf features(8, count);
   for (Eigen::Index i = 0; i < count; ++i)
     for (Eigen::Index k = 0; k < 8; ++k) features(k, i) = looks[i].features[static_cast<std::size_t>(k)];
+  if (decoder.rule == ColorRule::diffuse) return set_colors(features.middleRows(1, 3), looks);
   const Eigen::MatrixXf base = (w0.leftCols(8) * features).colwise() + b0;
   Eigen::MatrixXf mean = Eigen::MatrixXf::Zero(3, count);
   for (Eigen::Index axis = 0; axis < 3; ++axis)
@@ -80,9 +88,8 @@ void decode_colors(const Decoder& decoder, TexelTraits* looks, Eigen::Index coun
       const Eigen::MatrixXf out = (w2 * h1).colwise() + b2;
       mean.array() += (1 / (1 + (-out.array()).exp())) / 6;
     }
-  for (Eigen::Index i = 0; i < count; ++i)
-    if (looks[i].opacity > 0)
-      for (Eigen::Index k = 0; k < 3; ++k) looks[i].color[static_cast<std::size_t>(k)] = mean(k, i);
+  if (decoder.rule == ColorRule::diffuse_and_network) mean = (mean + features.middleRows(1, 3)).cwiseMin(1.0F);
+  set_colors(mean, looks);
 }
 
 }  // namespace

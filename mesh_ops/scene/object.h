@@ -61,6 +61,7 @@ struct Origin {
     std::weak_ptr<const FeatureTexture> texels;
   };
   std::filesystem::path folder;
+  std::string format = "mobilenerf";  ///< Format::name; only the writer of this format copies files
   Layout layout = Layout::split;
   Dialect dialect;  ///< of the files
   std::vector<Set> sets;

@@ -85,6 +85,7 @@ void ColorRange::join(const ColorRange& other) {
 }
 
 ColorRange color_range(const Decoder& decoder, const FeatureRange& features, double share) {
+  if (decoder.rule != ColorRule::network) share = 1;  // the rule divides by the covered share
   Interval x{Eigen::VectorXd::Zero(Decoder::inputs), Eigen::VectorXd::Zero(Decoder::inputs)};
   for (int k = 0; k < Decoder::features; ++k) {
     x.low[k] = share * features.low[static_cast<std::size_t>(k)];
@@ -99,6 +100,11 @@ ColorRange color_range(const Decoder& decoder, const FeatureRange& features, dou
   for (int c = 0; c < 3; ++c) {
     range.low[c] = logistic(last.low[c]) - slack;
     range.high[c] = logistic(last.high[c]) + slack;
+    if (decoder.rule == ColorRule::network) continue;
+    const bool adds = decoder.rule == ColorRule::diffuse_and_network;
+    const auto channel = static_cast<std::size_t>(c) + 1;
+    range.low[c] = std::min(1.0, features.low[channel] + (adds ? range.low[c] : 0)) - slack;
+    range.high[c] = std::min(1.0, features.high[channel] + (adds ? range.high[c] : 0)) + slack;
   }
   return range;
 }

@@ -36,7 +36,7 @@ struct ColorRange {
 };
 /// Bounds for all features in a range and all view directions, with a margin for rounding in shaders. `share` of a
 /// pixel's samples show the texels, and the others are empty. The decoder is fed features and direction averaged over
-/// all samples, that is, scaled by `share`.
+/// all samples, that is, scaled by `share`. Except under ColorRule::network, feature 0 must be 1.
 ColorRange color_range(const Decoder& decoder, const FeatureRange& features, double share);
 
 }  // namespace rebake

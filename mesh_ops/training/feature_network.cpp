@@ -1,5 +1,6 @@
 #include "mesh_ops/training/feature_network.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -43,6 +44,22 @@ FeatureNetwork::FeatureNetwork(const Decoder& d)
   layer(d.weights0, d.bias0);
   layer(d.weights1, d.bias1);
   layer(d.weights2, d.bias2);
+  rule = d.rule;
+}
+
+void decode_lanes(const FeatureNetwork& decoder, Lanes* inputs, Lanes* colors, Lanes* work) {
+  if (decoder.rule != ColorRule::network)
+    for (std::size_t l = 0; l < network_lanes; ++l) {
+      const float share = inputs[0].at[l];
+      for (std::size_t c = 0; c < decoder_inputs; ++c) inputs[c].at[l] /= share;
+    }
+  if (decoder.rule != ColorRule::diffuse) network_kernels().forward(decoder.view(), inputs, colors, work);
+  if (decoder.rule == ColorRule::network) return;
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t l = 0; l < network_lanes; ++l) {
+      const float diffuse = inputs[c + 1].at[l];
+      colors[c].at[l] = decoder.rule == ColorRule::diffuse ? diffuse : std::min(1.0F, diffuse + colors[c].at[l]);
+    }
 }
 
 Decoder FeatureNetwork::to_decoder() const {
@@ -60,6 +77,7 @@ Decoder FeatureNetwork::to_decoder() const {
   layer(d.weights0, d.bias0, inputs, hidden0);
   layer(d.weights1, d.bias1, hidden0, hidden1);
   layer(d.weights2, d.bias2, hidden1, outputs);
+  d.rule = rule;
   return d;
 }
 

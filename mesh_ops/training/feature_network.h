@@ -13,10 +13,12 @@ const NetworkKernels& network_kernels();
 /// All implementations that this processor can run, widest vectors first.
 std::vector<const NetworkKernels*> all_network_kernels();
 
-/// An MLP for training, in single precision: two hidden ReLU layers and logistic outputs.
+/// An MLP for training, in single precision: two hidden ReLU layers and logistic outputs. Only decoders of
+/// ColorRule::network are trained.
 struct FeatureNetwork {
   std::size_t inputs, hidden0, hidden1, outputs;
   std::vector<float> values;  ///< biases and weights, in the order of NetworkView
+  ColorRule rule = ColorRule::network;
 
   /// All weights and biases are 0.
   FeatureNetwork(std::size_t input_count, std::size_t width0, std::size_t width1, std::size_t output_count);
@@ -26,6 +28,10 @@ struct FeatureNetwork {
   NetworkView view() const { return {inputs, hidden0, hidden1, outputs, values.data()}; }
   Decoder to_decoder() const;  ///< requires 11 inputs and 3 outputs
 };
+
+/// Colours of a batch of texels by the decoder's rule; `inputs`: 8 features and the fed direction, which may be
+/// overwritten. `work`: as for NetworkKernels.
+void decode_lanes(const FeatureNetwork& decoder, Lanes* inputs, Lanes* colors, Lanes* work);
 
 /// He initialisation (He et al. 2015): uniform random weights, biases 0.
 void randomise(FeatureNetwork& network, std::uint64_t seed);

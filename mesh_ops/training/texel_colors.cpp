@@ -21,7 +21,11 @@ class Batch {
     for (std::size_t k = 0; k < 3; ++k)
       inputs_[texel_features + k].at[lane] = static_cast<float>(direction[static_cast<Eigen::Index>(k)]);
   }
-  void run() { network_kernels().forward(network_.view(), inputs_.data(), outputs_.data(), work_.data()); }
+  void run() {
+    // decode_lanes() may overwrite its inputs, but the features serve several directions.
+    std::array<Lanes, decoder_inputs> inputs = inputs_;
+    decode_lanes(network_, inputs.data(), outputs_.data(), work_.data());
+  }
   Color color(std::size_t lane) const {
     return {static_cast<double>(outputs_[0].at[lane]), static_cast<double>(outputs_[1].at[lane]),
             static_cast<double>(outputs_[2].at[lane])};

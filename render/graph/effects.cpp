@@ -31,6 +31,7 @@ std::string describe_draws(const FramePlan& plan) {
 
 std::string describe_decoder(const FramePlan& plan) {
   const Decoder& d = *plan.decoders.front();
+  if (d.rule == ColorRule::diffuse && plan.decoders.size() == 1) return "colours are read from the textures";
   return fmt::format("decoder 11-{}-{}-3, weights as {}", d.hidden0(), d.hidden1(),
                      plan.options.weights == RenderOptions::Weights::constants ? "constants" : "a buffer");
 }

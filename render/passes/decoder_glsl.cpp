@@ -31,7 +31,14 @@ std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decod
                                        "high.z", "high.w", "ray.x", "ray.y", "ray.z"};
   std::string out;
   for (std::size_t k = 0; k < decoders.size(); ++k) {
+    const ColorRule rule = decoders[k]->rule;
     out += fmt::format("vec3 decode_{}(vec4 low, vec4 high, vec3 ray) {{\n", k);
+    if (rule == ColorRule::diffuse) {
+      out += "  return low.yzw / low.x;\n}\n";
+      continue;
+    }
+    if (rule == ColorRule::diffuse_and_network)
+      out += "  float share = low.x;\n  low /= share;\n  high /= share;\n  ray /= share;\n";
     for_each_neuron(*decoders[k], [&](int layer, Eigen::Index j, double bias, const Eigen::VectorXd& weights) {
       out += fmt::format("  float {}{} = ", "abc"[layer], j);
       std::string sum = fmt::format("{:.9e}", rounded(bias, precision));
@@ -43,7 +50,8 @@ std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decod
       }
       out += layer < 2 ? fmt::format("max({}, 0.0);\n", sum) : sum + ";\n";
     });
-    out += "  return 1.0 / (1.0 + exp(-vec3(c0, c1, c2)));\n}\n";
+    out += rule == ColorRule::network ? "  return 1.0 / (1.0 + exp(-vec3(c0, c1, c2)));\n}\n"
+                                      : "  return min(low.yzw + 1.0 / (1.0 + exp(-vec3(c0, c1, c2))), 1.0);\n}\n";
   }
   out += "vec3 decode(int k, vec4 low, vec4 high, vec3 ray) {\n";
   for (std::size_t k = 1; k < decoders.size(); ++k)
@@ -57,7 +65,7 @@ DecoderBuffers decoder_buffers(const std::vector<std::shared_ptr<const Decoder>>
   for (const auto& decoder : decoders) {
     result.layout.insert(result.layout.end(),
                          {static_cast<float>(result.weights.size()), static_cast<float>(decoder->hidden0()),
-                          static_cast<float>(decoder->hidden1()), 0.0F});
+                          static_cast<float>(decoder->hidden1()), static_cast<float>(decoder->rule)});
     result.widest_layer = std::max({result.widest_layer, decoder->hidden0(), decoder->hidden1()});
     for_each_neuron(*decoder, [&](int, Eigen::Index, double bias, const Eigen::VectorXd& weights) {
       result.weights.push_back(rounded(bias, precision));

@@ -15,7 +15,7 @@ std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decod
 /// Contents of the buffers of decoder_buffer.glsl.
 struct DecoderBuffers {
   std::vector<float> weights;  ///< per neuron its bias, then its weights; padded to texels of four floats
-  std::vector<float> layout;   ///< four floats per decoder: index of its first weight, two hidden widths, 0
+  std::vector<float> layout;   ///< four floats per decoder: index of its first weight, two hidden widths, rule
   int widest_layer = 1;        ///< largest hidden width
 };
 DecoderBuffers decoder_buffers(const std::vector<std::shared_ptr<const Decoder>>& decoders,

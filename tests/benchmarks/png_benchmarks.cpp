@@ -40,7 +40,7 @@ void decode_by_openimageio(benchmark::State& state) {
   std::vector<std::uint8_t> texels;
   std::string error;
   for (auto _ : state) {
-    const auto reader = codecs.open_png(bytes(), file().string(), error);
+    const auto reader = codecs.open_memory("png", bytes(), file().string(), error);
     const PictureLayout& layout = reader->layout();
     texels.resize(static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height) * 4);
     if (!reader->read(0, layout.height, 4, texels.data())) state.SkipWithError("cannot be decoded");

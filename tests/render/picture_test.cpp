@@ -7,10 +7,12 @@
 
 #include <algorithm>
 
+#include "mesh_ops/formats/formats.h"
 #include "mesh_ops/texture/decoder.h"
 #include "render/compare.h"
 #include "render/thumbnail.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/nerf2mesh_example.h"
 #include "tests/support/oracle.h"
 
 namespace rebake::test {
@@ -102,6 +104,25 @@ TEST_P(PictureBySamples, TwoDecodersMixedAtPixels) {
   expect_as_cast(together({placed(made_object({.seed = 1}), moved(-0.4, 0, 0)),
                            placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))}),
                  view_from({0.5, 1.5, 4}, GetParam()));
+}
+
+// nerf2mesh and plain colours beside MobileNeRF, with weights as constants and in a buffer.
+TEST_P(PictureBySamples, OtherColorRules) {
+  const TemporaryFolder folder;
+  write_nerf2mesh_example(folder.path() / "n");
+  const Scene read = read_any(folder.path() / "n", Axes::y_up);
+  auto plain = std::make_shared<BakedObject>(*read.roots[0]->object);
+  plain->decoder = std::make_shared<const Decoder>(diffuse_decoder());
+  const Affine turn = moved(-0.9, 0.3, 0) * Eigen::AngleAxisd(0.8, Vec3(1, 2, 0).normalized());
+  const Scene all = together({placed(read.roots[0]->object, turn), placed(plain, moved(0.8, -0.7, 0.4)),
+                              placed(made_object({.seed = 2}), moved(0.9, 0.9, -0.3))});
+  for (const auto weights : {RenderOptions::Weights::constants, RenderOptions::Weights::buffer}) {
+    RenderOptions options;
+    options.weights = weights;
+    expect_as_cast(read, view_from({0.5, 1.5, 3}, GetParam()), options);
+    expect_as_cast(scene_of(plain), view_from({0.5, 1.5, 3}, GetParam()), options);
+    expect_as_cast(all, view_from({0.5, 1.5, 4}, GetParam()), options);
+  }
 }
 
 TEST_P(PictureBySamples, RotatedTriangles) {

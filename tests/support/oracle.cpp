@@ -99,7 +99,13 @@ Mat3 inverse_rotation(const Mat3& linear) {
   return (svd.matrixU() * svd.matrixV().transpose()).transpose();
 }
 
-Vec3 network(const Decoder& d, const std::array<double, 11>& input) {
+// The colour of one decoder's samples. `input`: sums over samples, divided by the number of all samples, of which
+// `coverage` show the object.
+Vec3 decoded(const Decoder& d, std::array<double, 11> input, double coverage) {
+  if (d.rule != ColorRule::network)
+    for (double& value : input) value /= coverage;
+  const Vec3 diffuse(input[1], input[2], input[3]);
+  if (d.rule == ColorRule::diffuse) return diffuse;
   std::vector<double> values(input.begin(), input.end());
   const auto layer = [&values](const Eigen::MatrixXd& w, const Eigen::VectorXd& b, bool relu) {
     std::vector<double> out(static_cast<std::size_t>(b.size()));
@@ -113,7 +119,8 @@ Vec3 network(const Decoder& d, const std::array<double, 11>& input) {
   layer(d.weights0, d.bias0, true);
   layer(d.weights1, d.bias1, true);
   layer(d.weights2, d.bias2, false);
-  return {1 / (1 + std::exp(-values[0])), 1 / (1 + std::exp(-values[1])), 1 / (1 + std::exp(-values[2]))};
+  const Vec3 out(1 / (1 + std::exp(-values[0])), 1 / (1 + std::exp(-values[1])), 1 / (1 + std::exp(-values[2])));
+  return d.rule == ColorRule::network ? out : Vec3(diffuse + out);
 }
 
 }  // namespace
@@ -215,7 +222,7 @@ Image cast_picture(const Scene& scene, const View& view) {
       double coverage = 0;
       for (std::size_t k = 0; k < sums.size(); ++k) {
         if (sums[k].coverage == 0) continue;
-        color += sums[k].coverage * network(*decoders[k], sums[k].input);
+        color += sums[k].coverage * decoded(*decoders[k], sums[k].input, sums[k].coverage).cwiseMin(1.0);
         coverage += sums[k].coverage;
       }
       color += (1 - coverage) * scene.background;

@@ -170,7 +170,7 @@ void add_blocks(Composition& result, std::uint32_t number) {
 }  // namespace
 
 bool Composition::exact() const {
-  return teachers.size() == 1 &&
+  return teachers.size() == 1 && teachers.front()->rule == ColorRule::network &&
          std::none_of(parts.begin(), parts.end(), [](const Part& p) { return p.bent || p.light; });
 }
 

@@ -99,9 +99,9 @@ PsnrEstimate judged(const Student& student, const Composition& composition, cons
   return worst;
 }
 
-// The teacher with most texels, or with Keep::node the one with most unbent triangles of that node. Throws FieldError
-// if there are none.
-std::size_t base_of(const Composition& composition, const FuseOptions& options) {
+// The teacher with most texels, or with Keep::node the one with most unbent triangles of that node; only of those that
+// MobileNeRF can store. Nullopt if there are none, which with Keep::node throws FieldError.
+std::optional<std::size_t> base_of(const Composition& composition, const FuseOptions& options) {
   std::vector<std::uint64_t> texels(composition.teachers.size());
   const bool one = options.keep == FuseOptions::Keep::node;
   // Shared texels count for the first copy only, so the teachers of a node are ranked by triangles.
@@ -111,9 +111,13 @@ std::size_t base_of(const Composition& composition, const FuseOptions& options) 
   if (!one)
     for (const Composition::Block& block : composition.blocks)
       texels[composition.parts[block.part].teacher] += block.opaque;
+  for (std::size_t k = 0; k < texels.size(); ++k)
+    if (composition.teachers[k]->rule != ColorRule::network) texels[k] = 0;
   const auto most = std::max_element(texels.begin(), texels.end());
-  if (*most == 0)
-    throw FieldError("keep", "must be auto, none, or the name of a visible object that has unbent triangles");
+  if (*most == 0 && one)
+    throw FieldError("keep",
+                     "must be auto, none, or the name of a visible MobileNeRF object that has unbent triangles");
+  if (*most == 0) return std::nullopt;
   return static_cast<std::size_t>(most - texels.begin());
 }
 
@@ -134,7 +138,9 @@ class FusePlanner {
       training_.until = start + duration(options.seconds / 3);
     }
     base_ = base_of(composition, options);
-    base_width_ = std::max(composition.teachers[base_]->hidden0(), composition.teachers[base_]->hidden1());
+    if (base_) base_width_ = std::max(composition.teachers[*base_]->hidden0(), composition.teachers[*base_]->hidden1());
+    all_are_networks_ = std::ranges::all_of(composition.teachers,
+                                            [](const auto& teacher) { return teacher->rule == ColorRule::network; });
     check_methods();
     sample_ = sampled(composition, sightlines, options.sample, training_.seed, progress);
   }
@@ -144,7 +150,7 @@ class FusePlanner {
     try_side_by_side(1, 1);
     const Clock::time_point begun = Clock::now();
     if ((wants(FuseMethod::keep) || wants(FuseMethod::train)) && (candidates().empty() || !late()))
-      kept_ = keeping(composition_, sample_, base_, training_, progress_);
+      kept_ = keeping(composition_, sample_, *base_, training_, progress_);
     if (kept_ && wants(FuseMethod::keep) && (!options_.width || base_width_ <= *options_.width))
       consider(*kept_, FuseMethod::keep, begun);
     const bool kept_is_enough =
@@ -167,6 +173,8 @@ class FusePlanner {
   bool wants(FuseMethod way) const {
     if (options_.keep == FuseOptions::Keep::node && way != FuseMethod::keep) return false;
     if (options_.keep == FuseOptions::Keep::none && way == FuseMethod::keep) return false;
+    if (!base_ && (way == FuseMethod::keep || way == FuseMethod::train)) return false;
+    if (!all_are_networks_ && way == FuseMethod::side_by_side) return false;
     return !options_.way || *options_.way == way;
   }
   bool reaches(const FuseCandidate& c) const { return c.trial.psnr_db >= options_.psnr_db; }
@@ -178,7 +186,9 @@ class FusePlanner {
   void check_methods() const {
     if (!wants(FuseMethod::keep) && !wants(FuseMethod::train) && !wants(FuseMethod::scratch) &&
         !wants(FuseMethod::side_by_side))
-      throw FieldError("keep", "contradicts the chosen fusing method");
+      throw all_are_networks_
+          ? FieldError("keep", "contradicts the chosen fusing method")
+          : FieldError("way", "does not suit objects of other formats than MobileNeRF: choose new, or leave it out");
     const bool must_keep = options_.keep == FuseOptions::Keep::node || options_.way == FuseMethod::keep;
     if (must_keep && options_.width && *options_.width < base_width_)
       throw FieldError("width", fmt::format("is {}, but the kept decoder has width {}", *options_.width, base_width_));
@@ -281,7 +291,8 @@ class FusePlanner {
   const Progress& progress_;
   TrainingOptions training_;
   FusePlan plan_;
-  std::size_t base_ = 0;
+  std::optional<std::size_t> base_;
+  bool all_are_networks_ = true;  // whether all decoders follow ColorRule::network
   int base_width_ = 0;
   TexelSample sample_;
   std::optional<Student> kept_;

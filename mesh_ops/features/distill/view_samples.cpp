@@ -178,7 +178,7 @@ void teacher_colors(const FeatureNetwork& teacher, const TexelGroup& group, cons
     lane = mixed(lane, mix);
     for (float& value : lane.at) value *= coverage;
   }
-  network_kernels().forward(teacher.view(), input, colors, work);
+  decode_lanes(teacher, input, colors, work);
   if (!group.lit) return;
   for (std::size_t c = 0; c < 3; ++c) {
     const Lanes gain = mixed(group.gain[c], mix), offset = mixed(added[c], mix);

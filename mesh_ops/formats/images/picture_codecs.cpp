@@ -22,7 +22,8 @@ bool known_extension(const std::filesystem::path& path) {
   return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-// Whether a PNG or JPEG contains its end marker; true for other formats.
+}  // namespace
+
 bool has_end_marker(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) {
     // PNG chunks: length, name, data, checksum.
@@ -47,8 +48,6 @@ bool has_end_marker(std::string_view bytes) {
   }
   return true;
 }
-
-}  // namespace
 
 const PictureCodecs& picture_codecs(const std::filesystem::path& picture) {
   static const ModuleSymbol found = module_symbol("librebake_pictures.so", picture_codecs_symbol);

@@ -63,9 +63,10 @@ class PictureCodecs {
   /// Opens an image file of any known format. Colours are not premultiplied by alpha unless the format stores them so,
   /// or the file is a WebP.
   virtual std::unique_ptr<PictureReader> open(const std::filesystem::path& path, std::string& error) const = 0;
-  /// Opens a PNG in memory; `bytes` must outlive the reader. `name` is for messages.
-  virtual std::unique_ptr<PictureReader> open_png(std::string_view bytes, const std::string& name,
-                                                  std::string& error) const = 0;
+  /// Opens an image in memory in a format of OpenImageIO ("png", "jpeg"); `bytes` must outlive the reader. `name` is
+  /// for messages.
+  virtual std::unique_ptr<PictureReader> open_memory(const std::string& format, std::string_view bytes,
+                                                     const std::string& name, std::string& error) const = 0;
   /// Decodes a WebP in memory as RGBA with the colours as stored, which OpenImageIO would multiply by alpha.
   virtual bool decode_webp(std::string_view bytes, WebpImage& image, std::string& error) const = 0;
   /// Encodes an RGB image, interleaved, row 0 at the top, in a format of OpenImageIO ("jpeg", "openexr"): 8-bit display
@@ -85,6 +86,8 @@ const PictureCodecs& picture_codecs(const std::filesystem::path& picture);
 /// Opens an image file of any known format. Throws FileError, also for PNGs and JPEGs without their end marker, since
 /// JPEG readers invent the missing part.
 std::unique_ptr<PictureReader> open_picture(const std::filesystem::path& path);
+/// Whether PNGs and JPEGs have their end marker; true for other formats.
+bool has_end_marker(std::string_view bytes);
 /// Shortens an error message of a codec to one line without the path.
 std::string picture_problem(const std::string& error, const std::filesystem::path& path);
 

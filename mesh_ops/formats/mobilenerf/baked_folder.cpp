@@ -196,17 +196,19 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, con
   if (!layout.missing.empty()) throw FileError(folder / layout.missing, layout.problem);
   std::vector<std::string> assumptions = layout.assumptions;
   std::vector<SetComponents> sets;
-  run_jobs(folder, layout, options.dialect, jobs_for(layout, sets), sets, progress);
+  Dialect dialect = options.dialect;
+  if (mlp.decoder.rule != ColorRule::network) dialect.alpha = AlphaCode::plain;
+  run_jobs(folder, layout, dialect, jobs_for(layout, sets), sets, progress);
   const bool chunked = !unsplit && std::any_of(layout.sets.begin(), layout.sets.end(),
                                                [](const BakedLayout::Set& set) { return !set.has_whole; });
 
   auto object = std::make_shared<BakedObject>();
   auto origin = std::make_shared<Origin>();
-  object->decoder = std::make_shared<const Decoder>(from_dialect(mlp.decoder, options.dialect));
+  object->decoder = std::make_shared<const Decoder>(from_dialect(mlp.decoder, dialect));
   object->other_members = std::move(mlp.others);
   object->axes = options.axes;
-  object->dialect = options.dialect;
-  origin->dialect = options.dialect;
+  object->dialect = dialect;
+  origin->dialect = dialect;
   object->layout = unsplit ? Layout::unsplit : chunked ? Layout::chunked : Layout::split;
   origin->folder = absolute_path(folder);
   origin->layout = object->layout;

@@ -59,7 +59,7 @@ class OtherPng : public RgbaRows {
     if (bytes.empty()) throw FileError(name, "is empty (0 bytes); a feature image was expected");
     if (!bytes.starts_with("\x89PNG\r\n\x1a\n")) throw FileError(name, "is neither a PNG nor a WebP file");
     std::string problem;
-    auto reader = picture_codecs(name).open_png(bytes, name.string(), problem);
+    auto reader = picture_codecs(name).open_memory("png", bytes, name.string(), problem);
     if (!reader) throw FileError(name, "cannot be decoded: " + problem);
     const PictureLayout& layout = reader->layout();
     if (layout.width < 1 || layout.height < 1 || layout.width > largest_png_side || layout.height > largest_png_side)

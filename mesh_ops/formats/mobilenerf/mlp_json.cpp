@@ -18,6 +18,22 @@ using nlohmann::json;
 
 constexpr std::size_t widest_layer = 512;
 
+// Member for decoders of other rules than ColorRule::network, in Rebake scenes.
+constexpr const char* rule_key = "rebake_color_rule";
+struct RuleName {
+  ColorRule rule;
+  const char* name;
+};
+constexpr RuleName rule_names[] = {{ColorRule::diffuse_and_network, "diffuse_and_network"},
+                                   {ColorRule::diffuse, "diffuse"}};
+
+ColorRule read_rule(const json& value, const std::filesystem::path& name) {
+  for (const RuleName& known : rule_names)
+    if (value == known.name) return known.rule;
+  throw FileError(name, fmt::format("\"{}\" is {}, which is unknown; a newer version of Rebake may have written it",
+                                    rule_key, value.dump()));
+}
+
 const json& member(const json& root, const char* key, const std::filesystem::path& name) {
   const auto found = root.find(key);
   if (found == root.end()) throw FileError(name, fmt::format("\"{}\" is missing", key));
@@ -151,8 +167,9 @@ MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) 
   d.weights1 = read_weights(root, "1_weights", d.bias0.size(), d.bias1.size(), name);
   d.weights2 = read_weights(root, "2_weights", d.bias1.size(), 3, name);
   if (const auto found = root.find("obj_num"); found != root.end()) file.obj_num = read_obj_num(*found, name);
+  if (const auto found = root.find(rule_key); found != root.end()) d.rule = read_rule(*found, name);
   file.others = json_members(text);
-  for (const char* key : {"0_weights", "0_bias", "1_weights", "1_bias", "2_weights", "2_bias", "obj_num"})
+  for (const char* key : {"0_weights", "0_bias", "1_weights", "1_bias", "2_weights", "2_bias", "obj_num", rule_key})
     file.others.erase(key);
   for (const auto& [key, value] : file.others)
     if (is_layer_key(key))
@@ -170,6 +187,8 @@ std::string write_mlp_json(const MlpFile& file) {
   root["2_weights"] = rows_of(file.decoder.weights2);
   root["2_bias"] = list_of(file.decoder.bias2);
   if (file.obj_num) root["obj_num"] = *file.obj_num;
+  for (const RuleName& known : rule_names)
+    if (known.rule == file.decoder.rule) root[rule_key] = known.name;
   std::string text = root.dump();
   for (const auto& [key, value] : file.others) text.insert(text.size() - 1, fmt::format(",\"{}\":{}", key, value));
   return text;

@@ -220,16 +220,19 @@ int largest_page_side(Layout layout, std::span<const BakedObject* const> objects
 
 BakedObject published(BakedObject object) {
   object.dialect = {};
+  // Features of other rules need all bits.
+  if (object.decoder->rule != ColorRule::network) object.dialect.alpha = AlphaCode::plain;
   return object;
 }
 
-void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedObject& object, Layout layout,
+void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedObject& made, Layout layout,
                         std::vector<std::string>& notes, const Progress& progress, bool baked_places,
                         std::optional<int> page_side) {
-  if (object.triangle_count() == 0) throw Error("an object without triangles cannot be written");
-  BakedObject filled = object;
-  std::erase_if(filled.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
-  const Fitted fit = fitted(filled, layout, baked_places, page_side, notes);
+  if (made.triangle_count() == 0) throw Error("an object without triangles cannot be written");
+  BakedObject object = made;
+  if (object.origin && object.origin->format != Origin{}.format) object.origin = nullptr;
+  std::erase_if(object.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
+  const Fitted fit = fitted(object, layout, baked_places, page_side, notes);
   const bool same_layout = object.origin && object.origin->layout == layout;
   const bool same_dialect = object.origin && object.origin->dialect == object.dialect;
   const bool same_names = same_dialect && (object.origin->layout == Layout::unsplit) == (layout == Layout::unsplit);

@@ -24,11 +24,12 @@ int largest_page_side(Layout layout, std::span<const BakedObject* const> objects
 /// was baked; unused texels then stay, since lighting finds erased triangles by their texels. Only Rebake reads
 /// these two files. Appends sentences for the user to `notes`. Throws Error if the object has no triangles, or if an
 /// unsplit folder needs more than one texture.
-void write_baked_folder(AtomicFolder& out, const std::filesystem::path& folder, const BakedObject& object,
-                        Layout layout, std::vector<std::string>& notes, const Progress& progress = {},
-                        bool baked_places = false, std::optional<int> page_side = std::nullopt);
+void write_baked_folder(AtomicFolder& out, const std::filesystem::path& folder, const BakedObject& made, Layout layout,
+                        std::vector<std::string>& notes, const Progress& progress = {}, bool baked_places = false,
+                        std::optional<int> page_side = std::nullopt);
 
-/// The object as the published format has it: scene.json does not record dialects.
+/// The object as scene.json needs it, which does not record dialects: as published, or with plain alpha where the
+/// decoder has another rule, which mlp.json records.
 BakedObject published(BakedObject object);
 
 }  // namespace rebake

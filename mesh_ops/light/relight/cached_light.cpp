@@ -32,6 +32,7 @@ void append(std::string& bytes, const Decoder& d) {
     append(bytes, weights->data(), static_cast<std::size_t>(weights->size()) * sizeof(double));
   for (const auto* bias : {&d.bias0, &d.bias1, &d.bias2})
     append(bytes, bias->data(), static_cast<std::size_t>(bias->size()) * sizeof(double));
+  if (d.rule != ColorRule::network) append(bytes, &d.rule, sizeof(d.rule));
 }
 
 void append_place(std::string& bytes, const Sun& sun) {

@@ -66,16 +66,17 @@ class Codecs : public rebake::PictureCodecs {
     return std::make_unique<Reader>(std::move(input));
   }
 
-  std::unique_ptr<PictureReader> open_png(std::string_view bytes, const std::string& name,
-                                          std::string& error) const override {
+  std::unique_ptr<PictureReader> open_memory(const std::string& format, std::string_view bytes, const std::string& name,
+                                             std::string& error) const override {
     auto source = std::make_unique<OIIO::Filesystem::IOMemReader>(const_cast<char*>(bytes.data()), bytes.size());
     OIIO::ImageSpec config, spec;
     config.attribute("oiio:UnassociatedAlpha", 1);
     void* proxy = source.get();
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    auto input = OIIO::ImageInput::create("png");
+    auto input = OIIO::ImageInput::create(format);
     if (!input || !input->open(name, spec, config)) {
-      error = input ? input->geterror() : "OpenImageIO has no PNG reader; install libopenimageio with PNG support";
+      error = input ? input->geterror()
+                    : "OpenImageIO cannot read " + format + "; install libopenimageio with support for it";
       return nullptr;
     }
     return std::make_unique<Reader>(std::move(input), std::move(source));
