@@ -217,10 +217,9 @@ ExportReport write_export(Session& session, const ExportAction& action) {
   return report;
 }
 
-void run(Session& session, const ExportAction& action) {
-  check_common(action);
-  const Scene scene = with_only(session.scene(), action.nodes);
-  if (action.plain) return export_plain(session, scene, action);
+namespace {
+
+void export_exact(Session& session, const Scene& scene, const ExportAction& action) {
   const ExportReport report = write_export(session, action);
   for (const std::string& note : report.notes) session.say("note: " + note);
   if (!report.preserves_scene && format_named(action.format.name).has_colors) {
@@ -228,6 +227,20 @@ void run(Session& session, const ExportAction& action) {
     report_lost_light(session, scene);
   }
   session.say(fmt::format("exported {}", action.out));
+}
+
+}  // namespace
+
+void run(Session& session, const ExportAction& action) {
+  check_common(action);
+  const Scene scene = with_only(session.scene(), action.nodes);
+  std::error_code error;
+  const bool replaces = std::filesystem::exists(action.out, error);
+  if (action.plain)
+    export_plain(session, scene, action);
+  else
+    export_exact(session, scene, action);
+  if (replaces) session.say("note: the existing folder was replaced");
 }
 
 REBAKE_DESCRIBE_ACTION(

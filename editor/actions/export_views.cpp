@@ -1,7 +1,7 @@
 #include "editor/actions/export_views.h"
 
 #include "editor/actions/describe_action.h"
-#include "editor/document/journal.h"
+#include "editor/document/replaced_work.h"
 #include "editor/edits/stored_view.h"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace rebake {
 
 void run(Session& session, const ExportViewsAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
-  Journal::refuse_overwriting(action.out);
+  refuse_replacing_work(action.out);
   if (action.width < 1 || action.width > 1 << 20) throw FieldError("width", "must lie between 1 and 1048576");
   if (action.height < 1 || action.height > 1 << 20) throw FieldError("height", "must lie between 1 and 1048576");
   const CameraFormat& format = camera_format_named(action.format.name.empty() ? "transforms" : action.format.name);

@@ -3,7 +3,7 @@
 #include "editor/actions/describe_action.h"
 #include "editor/actions/lit.h"
 #include "editor/actions/views.h"
-#include "editor/document/journal.h"
+#include "editor/document/replaced_work.h"
 #include "editor/edits/support.h"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace rebake {
 
 void run(Session& session, const RenderAction& action) {
   check_picture_path(action.out, session.document.sources());
-  Journal::refuse_overwriting(action.out);
+  refuse_replacing_work(action.out);
   const Scene scene = with_only(session.scene(), action.nodes);
   const View view = resolve_view(scene, action.camera, action.view, action.width, action.height, action.samples);
   // Objects that are not drawn still cast shadows.

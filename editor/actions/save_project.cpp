@@ -1,6 +1,7 @@
 #include "editor/actions/save_project.h"
 
 #include "editor/actions/describe_action.h"
+#include "editor/document/replaced_work.h"
 
 #include <filesystem>
 
@@ -9,6 +10,7 @@ namespace rebake {
 void run(Session& session, const SaveProjectAction& action) {
   if (std::filesystem::path(action.out).extension() != ".rebake")
     throw FieldError("out", "must end in .rebake, the extension of projects");
+  refuse_replacing_more(action.out, session.document.history().undo_count());
   for (const std::string& warning : session.document.save(action.out, session.progress))
     session.say("warning: " + warning);
   session.outputs.push_back(action.out);
@@ -17,6 +19,8 @@ void run(Session& session, const SaveProjectAction& action) {
 
 REBAKE_DESCRIBE_ACTION(
     SaveProjectAction, "Writes a project file: the sources, by relative path and content hash, and all edits.",
-    (auto& action, auto& visit) { visit("out", action.out, Need::required, "file to write, NAME.rebake"); })
+    (auto& action, auto& visit) {
+      visit("out", action.out, Need::required, "file to write, NAME.rebake; a project with more edits is not replaced");
+    })
 
 }  // namespace rebake

@@ -31,12 +31,9 @@ void describe_export(SubcommandDescription& command) {
     session.document = Document(std::move(opened.scene));
     // The sources include the scene or project file that refers to the source folders.
     opened.sources.check_folder(options->out);
-    std::error_code error;
-    const bool replaces = std::filesystem::exists(options->out, error);
     nlohmann::json action = options->fields.object();
     action["out"] = options->out;
     run(session, read_action<ExportAction>(action, session.scene()));
-    if (replaces) print_message("note: the existing folder was replaced");
     if (session.below_requested_psnr) throw ExitWith{4};
   });
 }

@@ -10,12 +10,14 @@
 #include "editor/cli/options.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
-#include "editor/document/journal.h"
+#include "editor/document/replaced_work.h"
 #include "editor/edits/edit.h"
 #include "editor/edits/results.h"
 #include "editor/fields/field_info.h"
+#include "editor/script/script_inputs.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/light/lighting.h"
 #include "mesh_ops/light/train_transfer_model.h"
 
@@ -156,13 +158,12 @@ void train(const Options& options) {
   auto [scene, sources] = load_scenes(options.paths, options.reading, progress_bar());
   for (const std::string& text : options.edits) {
     const json edit = json::parse(text, nullptr, false);  // invalid JSON is reported below
-    for (const char* field : {"mesh", "picture"})
-      if (edit.is_object() && edit.contains(field) && edit[field].is_string())
-        sources.add_file(edit[field].get<std::string>());
+    for (const ScriptInput& input : edit.is_object() ? script_inputs(edit.dump(), {}) : std::vector<ScriptInput>())
+      protect_input(sources, input.path, "a file that this run reads");
   }
   if (!options.out.empty()) {
     sources.check_file(options.out);
-    Journal::refuse_overwriting(options.out);
+    refuse_replacing_work(options.out);
     const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
     if (!std::filesystem::is_directory(folder)) throw FieldError("out", "folder does not exist: " + folder.string());
   } else if (!result_cache()) {

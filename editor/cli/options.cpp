@@ -88,6 +88,15 @@ LoadedScene load_scenes(const std::vector<std::string>& folders, const FolderOpt
       scene = std::move(read);
       return opened;
     }
+    // As for imports: the first scene also gives the background, the ground and the light.
+    if (scene.roots.empty()) {
+      scene.background = read.background;
+      scene.ground = read.ground;
+      scene.light = read.light;
+    } else if (read.light != nullptr || read.background != scene.background) {
+      print_message(
+          fmt::format("note: {}: its background and light are not used, but those of the first scene", folder));
+    }
     for (const NodePtr& root : read.roots)
       scene = with_added(scene, without_ids(*root), NodeId::none, scene.roots.size());
     for (const auto& [name, camera] : read.views) scene.views.try_emplace(name, camera);

@@ -9,6 +9,7 @@
 #include "editor/cli/terminal.h"
 #include "editor/document/document.h"
 #include "editor/document/project.h"
+#include "editor/document/replaced_work.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 
@@ -41,29 +42,10 @@ SourceLinks links_of(const std::vector<std::string>& pairs) {
   return links;
 }
 
-// Whether a file is a project, even a damaged one.
-bool holds_project(const std::filesystem::path& path) {
-  return read_file(path).find("\"rebake_project\"") != std::string::npos;
-}
-
-// Throws FileError if --replace would replace a project with more edits, or a damaged one.
-void refuse_larger_project(const Recovery& options, std::size_t recovered) {
-  if (!options.replace || !std::filesystem::exists(options.out)) return;
-  const nlohmann::json root = nlohmann::json::parse(read_file(options.out), nullptr, false);
-  if (!root.is_object() || !root.contains("edits"))
-    throw FileError(options.out,
-                    "is a damaged project, which may contain more edits, so it is not replaced; choose "
-                    "another name");
-  if (const std::size_t there = root.at("edits").size(); there > recovered)
-    throw FileError(options.out, fmt::format("contains {} edits, more than the {} recovered ones, so it is not "
-                                             "replaced; choose another name",
-                                             there, recovered));
-}
-
 // Saves a project with moved sources again, with their new paths.
 void relink_project(const Recovery& options) {
   const Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
-  refuse_larger_project(options, document.history().undo_count());
+  if (options.replace) refuse_replacing_more(options.out, document.history().undo_count());
   const std::vector<std::string> warnings = document.save(options.out, progress_bar());
   clear_progress_bar();
   for (const std::string& warning : warnings) print_message("warning: " + warning);
@@ -79,7 +61,7 @@ void recover(const Recovery& options) {
   if (!is_project && std::filesystem::equivalent(options.out, options.journal, error))
     throw FieldError("--out", "is the journal itself, which would be overwritten; name another file");
   if (options.replace && std::filesystem::exists(options.out) && !holds_project(options.out))
-    throw FileError(options.out, "is not a project, so it is not replaced; choose another name");
+    throw FileError(options.out, "exists and is not a project, so it is not replaced; choose another name");
   if (!options.replace && std::filesystem::exists(options.out))
     throw FileError(options.out, "already exists; choose another name, or use --replace");
   if (is_project) {
@@ -89,7 +71,7 @@ void recover(const Recovery& options) {
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
   // An empty project would block the next attempt.
   const bool nothing = recovered.edits == 0;
-  if (!nothing) refuse_larger_project(options, recovered.edits);
+  if (!nothing && options.replace) refuse_replacing_more(options.out, recovered.edits);
   if (!nothing)
     for (const std::string& warning : recovered.document.save(options.out, progress_bar()))
       print_message("warning: " + warning);

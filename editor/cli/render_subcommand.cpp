@@ -10,7 +10,7 @@
 #include "editor/cli/options.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
-#include "editor/document/journal.h"
+#include "editor/document/replaced_work.h"
 #include "editor/fields/codec.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
@@ -147,7 +147,7 @@ void render_photographs(const Rendering& options) {
         resolve_view(scene, cameras_as_views[k], "", cameras[k].width, cameras[k].height, options.view.samples));
     files.push_back(std::filesystem::path(options.out) / (names[k] + ".png"));
     check_picture_path(files.back(), sources);
-    Journal::refuse_overwriting(files.back());
+    refuse_replacing_work(files.back());
   }
   std::filesystem::create_directories(options.out);
   const Lighting lighting = lit(scene, progress_bar());
@@ -170,7 +170,7 @@ void render(const Rendering& options) {
   auto [scene, sources] = load_scenes(options.folders, options.reading, progress_bar());
   options.view.protect_files(sources);
   if (!options.out.empty()) check_picture_path(options.out, sources);
-  Journal::refuse_overwriting(options.out);
+  refuse_replacing_work(options.out);
   options.view.set_background(scene);
   const View view = options.view.view(scene);
   const RenderOptions how = options.view.render_options();

@@ -14,7 +14,7 @@
 #include "editor/actions/session.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
-#include "editor/document/journal.h"
+#include "editor/document/replaced_work.h"
 #include "editor/document/sources.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
@@ -115,13 +115,15 @@ void run_lines(Session& session, const RunOptions& options, const std::string& s
                const std::map<std::string, std::string>& variables) {
   try {
     run_script(session, script, options.script, variables);
+    if (!options.out.empty() && !session.exports.empty())
+      session.say(fmt::format("note: {} is not written, because the script exports", options.out));
     if (!options.out.empty() && session.exports.empty()) {
       ExportAction action;
       action.out = options.out;
       run(session, action);
     }
     if (!options.files.empty()) {
-      Journal::refuse_overwriting(options.files);
+      refuse_replacing_work(options.files);
       write_file_atomically(options.files, file_list(session, script, variables), session.document.sources());
     }
   } catch (const Error&) {

@@ -17,8 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int project_version = 3;
-
 std::string checksum(json root) {
   root.erase("checksum");
   return hash_text(content_hash(root.dump()));

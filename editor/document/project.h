@@ -24,6 +24,9 @@ namespace rebake {
 /// Version 1 had no checksum, version 2 no "replaces"; both are still read. Projects without "replaces" are written as
 /// version 2.
 
+/// The newest version of project files, which this program reads.
+inline constexpr int project_version = 3;
+
 /// True for a regular file whose name ends in .rebake.
 bool is_project_file(const std::filesystem::path& path);
 

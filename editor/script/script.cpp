@@ -93,9 +93,16 @@ json read_line(std::string_view text) {
   });
 }
 
+std::string with_line_feeds(std::string_view text) {
+  std::string lines(text);
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    if (lines[k] == '\r' && (k + 1 == lines.size() || lines[k + 1] != '\n')) lines[k] = '\n';
+  return lines;
+}
+
 void run_script(Session& session, std::string_view text, const std::filesystem::path& name,
                 const std::map<std::string, std::string>& variables) {
-  std::istringstream lines{std::string(text)};
+  std::istringstream lines{with_line_feeds(text)};
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;

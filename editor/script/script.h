@@ -31,6 +31,9 @@ nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, s
 /// Message of a JSON parse error, without the library's error code.
 std::string json_error_message(const std::exception& error);
 
+/// The text with line feeds in place of single carriage returns, which old editors write.
+std::string with_line_feeds(std::string_view text);
+
 /// The JSON text of a script line, without a byte order mark; empty for blank lines and comments.
 std::string_view command_text(std::string_view line);
 

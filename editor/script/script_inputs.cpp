@@ -26,8 +26,10 @@ void add_input_files(json line, std::vector<ScriptInput>& inputs) {
 
 }  // namespace
 
-std::vector<ScriptInput> script_inputs(std::string_view text, const std::map<std::string, std::string>& variables) {
+std::vector<ScriptInput> script_inputs(std::string_view script, const std::map<std::string, std::string>& variables) {
   std::vector<ScriptInput> inputs;
+  const std::string lines = with_line_feeds(script);
+  std::string_view text = lines;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = command_text(text.substr(0, end));

@@ -16,6 +16,6 @@ struct ScriptInput {
 
 /// All inputs of a script (imports, environment maps, cage meshes, cameras, photographs, masks) in the order of its
 /// lines, with variables replaced. Invalid lines are skipped.
-std::vector<ScriptInput> script_inputs(std::string_view text, const std::map<std::string, std::string>& variables);
+std::vector<ScriptInput> script_inputs(std::string_view script, const std::map<std::string, std::string>& variables);
 
 }  // namespace rebake

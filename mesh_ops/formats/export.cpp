@@ -203,6 +203,8 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     const BakedObject& object = *nodes.front().object;
     if (!scene.background.isOnes(0)) report.notes.emplace_back("the format has no background: viewers show white");
     if (!scene.views.empty()) report.notes.emplace_back("the format has no named views: they are not exported");
+    if (scene.ground != Ground{}) report.notes.emplace_back("the format has no ground: it is not exported");
+    if (scene.light) report.notes.emplace_back("the format has no light settings: they are not exported");
     if (object.axes == Axes::forward)
       report.notes.emplace_back(
           "the format does not record that this is a forward-facing scene: open it with --axes forward");
@@ -214,6 +216,9 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
         fmt::format("one folder holds one decoder in one orientation: wrote scene.json with {} folders", nodes.size()));
     Scene merged;
     merged.background = scene.background;
+    merged.ground = scene.ground;
+    if (scene.light)
+      report.notes.emplace_back("light settings are not exported, which need all nodes; save keeps them");
     merged.views = scene.views;
     std::vector<std::string> taken;
     std::map<const BakedObject*, std::string> folder_of;

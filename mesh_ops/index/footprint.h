@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "mesh_ops/scene/object.h"
 
@@ -59,6 +60,12 @@ void for_each_texel_inside(const std::array<Vec2, 3>& p, int width, int height, 
     for (int x = begin; x < end; ++x) visit(x, y);
   });
 }
+
+/// Calls visit(x, y, area, centroid) for each texel whose square overlaps the triangle: area of the overlap in texels²,
+/// and its centroid in texel coordinates. Border texels extend to infinity, as under clamping. Nothing for coordinates
+/// that are not finite.
+void for_each_texel_piece(const std::array<Vec2, 3>& p, int width, int height,
+                          const std::function<void(int x, int y, double area, const Vec2& centroid)>& visit);
 
 /// Barycentric coordinates of a point; (1, 0, 0) if the triangle has no area.
 inline Vec3 barycentric(const std::array<Vec2, 3>& p, const Vec2& at) {

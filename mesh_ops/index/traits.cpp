@@ -11,6 +11,8 @@ namespace rebake {
 
 namespace {
 
+constexpr double least_opaque_share = 1e-6;
+
 // Sums of texel bytes; converted to features once per triangle.
 struct Sum {
   std::array<std::uint32_t, 8> bytes{};
@@ -36,6 +38,22 @@ struct Sum {
 };
 static_assert(std::endian::native == std::endian::little && sizeof(Texel) == 8);
 
+// Share of a triangle's area that opaque texels cover, also those whose centres are outside; 0 below a millionth, which
+// rounding of UVs can produce. Calls visit(x, y) for these texels.
+template <class Visit>
+double for_each_opaque_piece(const TextureSet& set, std::size_t f, Visit visit) {
+  const FeatureTexture& texels = *set.texels;
+  double whole = 0, opaque = 0;
+  for_each_texel_piece(texel_corners(set, f), texels.width(), texels.height(),
+                       [&](int x, int y, double area, const Vec2& /*centroid*/) {
+                         whole += area;
+                         if (!texels.opaque(x, y)) return;
+                         opaque += area;
+                         visit(x, y);
+                       });
+  return opaque > least_opaque_share * whole ? opaque / whole : 0;
+}
+
 TexelTraits looks_of(const TextureSet& set, const TexelReader& reader, std::size_t f) {
   const FeatureTexture& texels = *set.texels;
   const std::array<Vec2, 3> corners = texel_corners(set, f);
@@ -53,7 +71,10 @@ TexelTraits looks_of(const TextureSet& set, const TexelReader& reader, std::size
   }
   TexelTraits looks;
   looks.opacity = static_cast<float>(sum.opaque) / static_cast<float>(sum.all);
-  if (sum.opaque > 0) {
+  if (sum.opaque == 0)
+    looks.opacity =
+        static_cast<float>(for_each_opaque_piece(set, f, [&](int x, int y) { sum.add(&reader.at(x, y), 1); }));
+  if (sum.opaque > 0 && looks.opacity > 0) {
     for (std::size_t k = 0; k < 8; ++k) looks.features[k] = static_cast<float>(sum.bytes[k]) / (255.0F * sum.opaque);
     if (texels.alpha_code() == AlphaCode::halved)
       for (const std::size_t k : {3, 7}) looks.features[k] = 2 * looks.features[k] - 1;
@@ -113,9 +134,11 @@ bool shows_opaque(const TextureSet& set, std::size_t triangle) {
     any = true;
     opaque = opaque || texels.opaque(x, y);
   });
-  if (any) return opaque;
-  const Vec2 middle = (corners[0] + corners[1] + corners[2]) / 3;
-  return texels.opaque_at(middle.x() / texels.width(), 1 - middle.y() / texels.height());
+  if (!any) {
+    const Vec2 middle = (corners[0] + corners[1] + corners[2]) / 3;
+    opaque = texels.opaque_at(middle.x() / texels.width(), 1 - middle.y() / texels.height());
+  }
+  return opaque || for_each_opaque_piece(set, triangle, [](int, int) {}) > 0;
 }
 
 std::vector<TriangleTraits> triangle_traits(const BakedObject& object,

@@ -12,8 +12,10 @@ namespace rebake {
 struct TriangleTraits {
   std::array<float, 8> features{};  ///< mean of the decoded features of its opaque texels
   std::array<float, 3> color{};  ///< display colour of the mean features, averaged over the six axis directions; 0 … 1
-  float opacity = 0;             ///< share of opaque texels, 0 … 1
-  float area = 0;                ///< in square object units
+  /// Share of opaque texels among those whose centres are inside; if that is 0, share of the area that opaque texels
+  /// cover. 0 if that is below a millionth.
+  float opacity = 0;
+  float area = 0;                 ///< in square object units
   std::array<float, 3> normal{};  ///< unit vector, or zero if the triangle has no area
 };
 

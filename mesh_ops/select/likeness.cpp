@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mesh_ops/base/elementary.h"
@@ -70,10 +71,11 @@ Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector
 }
 
 TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, const LikenessBounds& bounds) {
-  // 90 degrees includes all planes, but its rounded cosine is above 0.
-  const double min_cosine = bounds.orientation && *bounds.orientation < 90
-                                ? elementary::sine_cosine(*bounds.orientation * std::numbers::pi / 180).cosine
-                                : 0;
+  // Sines are exact for equal planes, up to the rounding of the normals, which are floats.
+  constexpr double rounding = 4.0 * std::numeric_limits<float>::epsilon();
+  const double max_sine = bounds.orientation && *bounds.orientation < 90
+                              ? elementary::sine_cosine(*bounds.orientation * std::numbers::pi / 180).sine + rounding
+                              : 2;
   const auto traits = traits_of(*placed.node->object);
   const WorldShape shape(placed);
   TriangleSet flags(traits->size());
@@ -87,7 +89,7 @@ TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, cons
       const Vec3 area = shape.area(t);
       if (bounds.size && (area.norm() > model.area * *bounds.size || area.norm() * *bounds.size < model.area)) return;
       const Vec3 normal = area.stableNormalized();
-      if (bounds.orientation && (normal.isZero(0) || std::abs(normal.dot(model.normal)) < min_cosine)) return;
+      if (bounds.orientation && (normal.isZero(0) || normal.cross(model.normal).norm() > max_sine)) return;
     }
     flags[f] = 1;
   });

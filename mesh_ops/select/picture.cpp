@@ -196,6 +196,9 @@ const std::array<Vec3, 7> inner_points = {
     Vec3(1.0 / 3, 1.0 / 3, 1.0 / 3), Vec3(0.8, 0.1, 0.1),   Vec3(0.1, 0.8, 0.1),  Vec3(0.1, 0.1, 0.8),
     Vec3(0.45, 0.45, 0.1),           Vec3(0.1, 0.45, 0.45), Vec3(0.45, 0.1, 0.45)};
 
+// Rays per triangle, if 16 points do not need more.
+constexpr std::size_t max_rays = 4096;
+
 }  // namespace
 
 TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpoint>& viewpoints) {
@@ -213,21 +216,23 @@ TriangleSet triangles_unseen(const BakedObject& object, const std::vector<Viewpo
         return;
       }
       std::vector<Vec3> opaque;
-      for_each_texel_inside(uv, set.texels->width(), set.texels->height(), [&](int x, int y) {
-        if (!set.texels->opaque(x, y)) return;
-        const Vec3 w = barycentric(uv, {x + 0.5, y + 0.5});
-        opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
-      });
-      // A narrow or small triangle may contain no texel centre; then points inside it are tested.
+      // One point in each opaque texel that shows.
+      for_each_texel_piece(uv, set.texels->width(), set.texels->height(),
+                           [&](int x, int y, double /*area*/, const Vec2& at) {
+                             if (!set.texels->opaque(x, y)) return;
+                             const Vec3 w = barycentric(uv, at);
+                             opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
+                           });
+      // UVs without area, or that are not finite.
       if (opaque.empty())
         for (const Vec3& w : inner_points) {
           const Vec2 at = uv[0] * w[0] + uv[1] * w[1] + uv[2] * w[2];
-          const int x = std::clamp(static_cast<int>(at.x()), 0, set.texels->width() - 1);
-          const int y = std::clamp(static_cast<int>(at.y()), 0, set.texels->height() - 1);
-          if (set.texels->opaque(x, y)) opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
+          if (!at.allFinite()) continue;
+          if (set.texels->opaque(texel_within(at.x(), set.texels->width()), texel_within(at.y(), set.texels->height())))
+            opaque.push_back(p[face[0]] * w[0] + p[face[1]] * w[1] + p[face[2]] * w[2]);
         }
-      // At most 16 points, spread evenly over all of them.
-      constexpr std::size_t most = 16;
+      // A number of points that depends on the number of eyes, spread evenly over all of them.
+      const std::size_t most = std::max<std::size_t>(16, max_rays / std::max<std::size_t>(1, viewpoints.size()));
       const std::size_t tried = std::min(most, opaque.size());
       bool seen = false;
       for (std::size_t k = 0; k < tried && !seen; ++k) {

@@ -8,8 +8,10 @@ namespace rebake {
 
 namespace {
 
+// The centroid, which rounding does not move out of the triangle's box.
 Vec3 centre(const Soup& soup, const Face& face) {
-  return (soup.positions()[face[0]] + soup.positions()[face[1]] + soup.positions()[face[2]]) / 3;
+  const Vec3 &a = soup.positions()[face[0]], &b = soup.positions()[face[1]], &c = soup.positions()[face[2]];
+  return ((a + b + c) / 3).cwiseMax(a.cwiseMin(b).cwiseMin(c)).cwiseMin(a.cwiseMax(b).cwiseMax(c));
 }
 
 }  // namespace
@@ -19,24 +21,21 @@ FrameTransform::FrameTransform(CoordinateFrame frame, const PlacedNode& placed) 
   if (frame != CoordinateFrame::bounds) return;
   const Box box = placed.node->object->bounds();
   radius_scale_ = box.diagonal().norm();
-  for (int axis = 0; axis < 3; ++axis) {
-    // If the box is flat along an axis, its only coordinate on that axis maps to 0.
-    const double size = box.sizes()[axis];
-    const double scale = size > 0 ? 1 / size : 1;
-    from_object_.linear()(axis, axis) = scale;
-    from_object_.translation()[axis] = -box.min()[axis] * scale;
-  }
+  relative_ = true;
+  min_ = box.min();
+  // If the box is flat along an axis, its only coordinate on that axis maps to 0.
+  size_ = (box.sizes().array() > 0).select(box.sizes(), Vec3::Ones());
+  from_object_ = size_.cwiseInverse().asDiagonal() * Eigen::Translation3d(-min_);
 }
 
 ObjectRegion region_of(const FrameTransform& points, const BoxRegion& box) {
-  const Affine& from_object = points.from_object();
-  const auto inside = [from_object, box](const Vec3& object_point) {
-    const Vec3 p = from_object * object_point;
+  const auto inside = [points, box](const Vec3& object_point) {
+    const Vec3 p = points.from_object(object_point);
     return (p.array() >= box.min.array()).all() && (p.array() <= box.max.array()).all();
   };
-  const auto may_touch = [from_object, box](const std::array<Vec3, 3>& corners) {
+  const auto may_touch = [points, box](const std::array<Vec3, 3>& corners) {
     Box triangle;
-    for (const Vec3& corner : corners) triangle.extend(from_object * corner);
+    for (const Vec3& corner : corners) triangle.extend(points.from_object(corner));
     return (triangle.max().array() >= box.min.array()).all() && (triangle.min().array() <= box.max.array()).all();
   };
   return {inside, may_touch};
@@ -58,8 +57,8 @@ ObjectRegion region_of(const FrameTransform& points, const SphereRegion& sphere)
 }
 
 ObjectRegion region_of(const FrameTransform& points, const HalfSpaceRegion& half) {
-  const auto inside = [from_object = points.from_object(), half](const Vec3& object_point) {
-    return half.normal.dot(from_object * object_point - half.point) >= 0;
+  const auto inside = [points, half](const Vec3& object_point) {
+    return half.normal.dot(points.from_object(object_point) - half.point) >= 0;
   };
   const auto may_touch = [inside](const std::array<Vec3, 3>& corners) {
     return std::any_of(corners.begin(), corners.end(), inside);

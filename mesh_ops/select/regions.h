@@ -28,7 +28,10 @@ struct HalfSpaceRegion {
 class FrameTransform {
  public:
   FrameTransform(CoordinateFrame frame, const PlacedNode& placed);
-  const Affine& from_object() const { return from_object_; }
+  /// A point of object space in the frame. In `bounds`, corners of the box are exactly 0 and 1.
+  Vec3 from_object(const Vec3& point) const {
+    return relative_ ? Vec3((point - min_).cwiseQuotient(size_)) : Vec3(from_object_ * point);
+  }
   Vec3 to_object(const Vec3& point) const { return from_object_.inverse() * point; }
   /// Factor from a radius in the frame to a distance in the space of metric().
   double radius_scale() const { return radius_scale_; }
@@ -37,6 +40,8 @@ class FrameTransform {
 
  private:
   Affine from_object_ = Affine::Identity();
+  bool relative_ = false;  ///< CoordinateFrame::bounds
+  Vec3 min_ = Vec3::Zero(), size_ = Vec3::Ones();
   Affine metric_ = Affine::Identity();
   double radius_scale_ = 1;
 };

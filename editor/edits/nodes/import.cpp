@@ -3,6 +3,7 @@
 #include "editor/edits/describe_edit.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -34,17 +35,29 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
     node.name = edit.as;
   }
   Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
-  for (const auto& [name, camera] : read.views) result.views.try_emplace(name, camera);
-  // The first import also sets the background, the ground and the light.
-  if (scene.roots.empty()) {
-    if (scene.background == Scene{}.background) result.background = read.background;
-    if (!scene.light) result.light = read.light;
-  }
-  if (scene.roots.empty() && read.ground != Ground{})
+  std::vector<std::string> dropped;
+  for (const auto& [name, camera] : read.views)
+    if (const auto [known, fresh] = result.views.try_emplace(name, camera); !fresh && known->second != camera)
+      dropped.push_back(fmt::format("the view \"{}\"", name));
+  // The first import also sets the background, the ground and the light, unless edits have set them before.
+  const bool first = scene.roots.empty();
+  const auto take = [&](const char* what, bool states, bool is_free) {
+    const bool takes = states && first && is_free;
+    if (states && !takes) dropped.emplace_back(what);
+    return takes;
+  };
+  if (take("its background", read.background != Scene{}.background && read.background != scene.background,
+           scene.background == Scene{}.background))
+    result.background = read.background;
+  if (take("its light settings", read.light != nullptr, scene.light == nullptr)) result.light = read.light;
+  if (take("its ground", read.ground != Ground{} && read.ground != scene.ground, scene.ground == Ground{}))
     set_ground(result, read.ground);
   else if (const Box box = world_bounds(result); edit.ground && !box.isEmpty())
     set_ground(result, {Vec3::UnitY(), box.min().y()});
   Report report;
+  if (!dropped.empty())
+    report.lines.push_back(
+        fmt::format("note: {}: not imported, because the scene has its own: {}", edit.path, fmt::join(dropped, ", ")));
   for (const std::string& assumption : assumptions_of(read))
     report.lines.push_back(fmt::format("warning: {}: {}", edit.path, assumption));
   return {std::move(result), std::move(report)};

@@ -54,7 +54,8 @@ REBAKE_DESCRIBE_EDIT(
             "without an opaque texel inside or within one texel of the edges");
       visit("duplicates", edit.duplicates, Need::optional, "same vertices and texels as a triangle drawn later");
       visit("unseen", edit.unseen, Need::optional,
-            "not visible from this many eyes on a sphere around the object; other objects do not occlude");
+            "not visible from this many eyes on a sphere around the object; other objects do not occlude; points in at "
+            "least 16 opaque texels per triangle are tested");
       visit("distance", edit.distance, Need::optional, "distance of the eyes, in half diagonals of the object's box");
       visit("unseen_from", edit.unseen_from, Need::optional,
             "names of stored views: not visible from any of their eyes");

@@ -1,5 +1,7 @@
 #include "mesh_ops/formats/cameras/photographs.h"
 
+#include <algorithm>
+
 #include "mesh_ops/formats/cameras/mask_images.h"
 
 namespace rebake {
@@ -18,6 +20,24 @@ fs::path existing(const fs::path& folder, const std::string& name) {
   return {};
 }
 
+// The folders that hold the first photographs: the capture's folder, those in it, such as images_4, and the same around
+// it, for captures whose cameras are in a subfolder, as in nerfstudio's colmap/sparse/0.
+std::vector<fs::path> photograph_folders(const fs::path& capture, const std::vector<PhotoCamera>& cameras) {
+  constexpr std::size_t tried = 3;
+  std::vector<fs::path> found;
+  const auto add_if_used = [&](const fs::path& folder) {
+    for (std::size_t k = 0; k < std::min(tried, cameras.size()); ++k)
+      if (!existing(folder, cameras[k].name).empty()) return found.push_back(folder);
+  };
+  for (fs::path around : {capture, capture.parent_path()}) {
+    add_if_used(around);
+    std::error_code error;
+    for (fs::directory_iterator it(around, error), end; !error && it != end; it.increment(error))
+      if (it->is_directory(error)) add_if_used(it->path());
+  }
+  return found;
+}
+
 }  // namespace
 
 fs::path photograph_at(const fs::path& folder, const std::string& name) {
@@ -31,7 +51,9 @@ fs::path capture_folder(const fs::path& camera_file) {
   fs::path folder = fs::absolute(camera_file).lexically_normal();
   if (!folder.has_filename()) folder = folder.parent_path();
   if (!fs::is_directory(folder, error)) folder = folder.parent_path();
-  if (folder.filename() == "0" && folder.parent_path().filename() == "sparse") folder = folder.parent_path();
+  const std::string name = folder.filename().string();
+  const bool is_number = !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number && folder.parent_path().filename() == "sparse") folder = folder.parent_path();
   return folder.filename() == "sparse" ? folder.parent_path() : folder;
 }
 
@@ -41,11 +63,9 @@ std::vector<fs::path> capture_files(const fs::path& camera_file, const std::vect
   const auto add = [&](const fs::path& file) {
     if (!file.empty()) files.push_back(file);
   };
-  for (const PhotoCamera& camera : cameras) {
-    add(existing(folder, camera.name));
-    add(existing(folder / "images", camera.name));
-    add(existing(folder, camera.mask.string()));
-  }
+  for (const PhotoCamera& camera : cameras) add(existing(folder, camera.mask.string()));
+  for (const fs::path& place : photograph_folders(folder, cameras))
+    for (const PhotoCamera& camera : cameras) add(existing(place, camera.name));
   for (const fs::path& mask : mask_files(cameras, folder, folder / "masks")) add(mask);
   return files;
 }

@@ -78,6 +78,49 @@ TEST_F(Guards, RejectsOutputsOverAnotherRunsJournal) {
   EXPECT_EQ(read_file(path("left.journal")), journal);
 }
 
+TEST_F(Guards, ProjectsAreNotReplacedByOtherOutputsNorBySmallerProjects) {
+  const std::string save = fmt::format("{{\"op\": \"save_project\", \"out\": \"{}\"}}\n", path("p.rebake").string());
+  write("large.jsonl", import_line() + R"({"op": "background", "color": [1, 0, 0]})" + "\n" + save);
+  write("small.jsonl", import_line() + save);
+  EXPECT_EQ(program("run {}/large.jsonl"), 0) << log();
+  EXPECT_EQ(program("run {}/large.jsonl"), 0) << log();
+  const std::string project = read_file(path("p.rebake"));
+  for (const char* command :
+       {"run {}/small.jsonl", "run {}/small.jsonl --list-files {}/p.rebake", "render {}/p.rebake -o {}/p.rebake",
+        "render " REBAKE_SOURCE "/samples/scenes/kettle -o {}/p.rebake --size 8x8"})
+    EXPECT_EQ(program(command), 1) << command;
+  write("views.jsonl", import_line() +
+                           R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}})" + "\n" +
+                           fmt::format("{{\"op\": \"export_views\", \"out\": \"{}\"}}", path("p.rebake").string()));
+  EXPECT_EQ(program("run {}/views.jsonl"), 1);
+  EXPECT_NE(log().find("is a project, whose edits would be lost"), std::string::npos) << log();
+  EXPECT_EQ(read_file(path("p.rebake")), project);
+  write("p.rebake", R"({"rebake_project": 99, "sources": [], "edits": []})");
+  EXPECT_EQ(program("run {}/large.jsonl"), 1);
+  EXPECT_NE(log().find("newer version"), std::string::npos) << log();
+}
+
+TEST_F(Guards, PhotographsOfEveryUsualLayoutAreProtected) {
+  for (const auto& [model, pictures] : {std::pair("ns/colmap/sparse/0", "ns/images"),
+                                        {"c3/sparse/1", "c3/images"},
+                                        {"c4/sparse/0", "c4/input"},
+                                        {"c5/sparse", "c5"},
+                                        {"c6/sparse/0", "c6/images_4"}}) {
+    fs::create_directories(path(model));
+    fs::create_directories(path(pictures));
+    write(std::string(model) + "/cameras.txt", "1 PINHOLE 12 10 14 14 6 5\n");
+    write(std::string(model) + "/images.txt", "1 1 0 0 0 0 0 4 1 0001.png\n\n");
+    write(std::string(model) + "/points3D.txt", "");
+    write(std::string(pictures) + "/0001.png", "photograph");
+    EXPECT_EQ(program(fmt::format("render " REBAKE_SOURCE "/samples/scenes/kettle --cameras {{}}/{} -o {{}}/{}", model,
+                                  pictures)),
+              1)
+        << model;
+    EXPECT_NE(log().find("is a file of the capture"), std::string::npos) << log();
+    EXPECT_EQ(read_file(path(std::string(pictures) + "/0001.png")), "photograph");
+  }
+}
+
 TEST_F(Guards, KeepsDamagedProjectsAndLeftoversThatAreRead) {
   write("failing.jsonl", import_line() + R"({"op": "remove", "node": "none"})");
   EXPECT_EQ(program("run {}/failing.jsonl --journal {}/left.journal"), 1);

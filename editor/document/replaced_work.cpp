@@ -1,0 +1,45 @@
+#include "editor/document/replaced_work.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "editor/document/journal.h"
+#include "editor/document/project.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+bool holds_project(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && read_file(path).find("\"rebake_project\"") != std::string::npos;
+}
+
+void refuse_replacing_work(const fs::path& path) {
+  Journal::refuse_overwriting(path);
+  // Reading large pictures only to look for a project would be slow; projects have their extension.
+  if (is_project_file(path) && holds_project(path))
+    throw FileError(path, "is a project, whose edits would be lost; name another file");
+}
+
+void refuse_replacing_more(const fs::path& path, std::size_t edits) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return;
+  Journal::refuse_overwriting(path);
+  const auto refuse = [&](const std::string& what) {
+    throw FileError(path, what + ", so it is not replaced; choose another name, or remove it first");
+  };
+  if (!holds_project(path)) refuse("exists and is not a project");
+  const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
+  if (!root.is_object() || !root.contains("edits") || !root.at("edits").is_array())
+    refuse("is a damaged project, which may contain more edits");
+  const nlohmann::json& version = root.at("rebake_project");
+  if (!version.is_number() || version > project_version) refuse("was written by a newer version of Rebake");
+  if (const std::size_t there = root.at("edits").size(); there > edits)
+    refuse(fmt::format("contains {} edits, more than the {} to be saved", there, edits));
+}
+
+}  // namespace rebake
