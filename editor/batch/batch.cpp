@@ -43,7 +43,7 @@ fs::path state_folder(const BatchOptions& options) { return options.out / ".reba
 // Hash of the inputs of a result: version, program, script, scene and variables, but not files that the script names. A
 // scene that was done with the same key need not run again.
 std::string key_of(const BatchOptions& options, std::uint64_t program, std::uint64_t script, const fs::path& scene) {
-  std::string all = fmt::format("{} {:016x} {:016x} {:016x}", REBAKE_VERSION, program, script, folder_hash(scene));
+  std::string all = fmt::format("{} {:016x} {:016x} {:016x}", REBAKE_VERSION, program, script, content_hash_at(scene));
   for (const std::string& variable : options.variables) all += '\n' + variable;
   return hash_text(content_hash(all));
 }

@@ -18,8 +18,7 @@ void describe_export(SubcommandDescription& command) {
     FieldOptions fields;
   };
   auto options = std::make_shared<Options>();
-  command.option("folder", options->folder, "MobileNeRF folder, Rebake scene or project", "FOLDER|SCENE|PROJECT")
-      .required();
+  command.option("folder", options->folder, "scene: a folder, a mesh or a project", "FOLDER|SCENE|PROJECT").required();
   command.option("-o,--out", options->out, "output folder; replaced atomically", "FOLDER").required();
   options->fields.add_to(command, action_type<ExportAction>().fields(), {"out"});
   options->reading.add_to(command);

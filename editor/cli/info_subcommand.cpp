@@ -123,8 +123,7 @@ void describe_info(SubcommandDescription& command) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  command.option("folder", options->folder, "MobileNeRF folder, Rebake scene or project", "FOLDER|SCENE|PROJECT")
-      .required();
+  command.option("folder", options->folder, "scene: a folder, a mesh or a project", "FOLDER|SCENE|PROJECT").required();
   command.flag("--json", options->json, "print JSON; memory in bytes");
   options->reading.add_to(command);
   command.does([options] {

@@ -128,7 +128,7 @@ void add_sources(SourceGuard& guard, const std::vector<Edit>& edits) {
 
 void add_sources(SourceGuard& guard, const Scene& scene) {
   for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->object && placed.node->object->origin) protect_scene(guard, placed.node->object->origin->folder);
+    if (placed.node->object && placed.node->object->origin) protect_input(guard, placed.node->object->origin->folder);
 }
 
 }  // namespace rebake

@@ -124,9 +124,9 @@ class Document:
         nodes: only these nodes and their children; default: all
         """
     def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", half_direction: bool | None = None, direction_first: bool | None = None, bgr: bool | None = None, alpha: Literal["halved", "plain"] | None = None, no_holes: bool | None = None, ground: bool = False, content: str = "") -> None:
-        """Reads a MobileNeRF folder or a Rebake scene into the scene.
+        """Reads a scene or a textured mesh into the scene.
 
-        path: folder to read
+        path: a folder (MobileNeRF, Rebake scene, nerf2mesh) or a file (.obj, .glb, .gltf, .ply)
         as_: name of the new node; empty: the folder's name
         axes: orientation of a MobileNeRF folder; Rebake scenes contain theirs
         half_direction: the folder's decoder takes (d + 1) / 2 instead of the view direction d

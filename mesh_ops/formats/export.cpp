@@ -1,6 +1,7 @@
 #include "mesh_ops/formats/export.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -9,6 +10,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/features/atlas/rotation_groups.h"
+#include "mesh_ops/features/distill/diffuse_network.h"
 #include "mesh_ops/formats/mobilenerf/write_baked_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/formats/scene_files.h"
@@ -173,7 +175,9 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
                           const Progress& progress) {
   bool reordered = false;
   std::vector<std::string> bent;
-  const std::vector<Node> nodes = merged_for_export(without_bends(scene, &bent), options.layout, &reordered);
+  std::vector<std::string> coded;
+  const std::vector<Node> nodes =
+      merged_for_export(without_bends(with_networks(scene, &coded), &bent), options.layout, &reordered);
   if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
   for (const Node& node : nodes)
     if (node.object->decoder->rule != ColorRule::network)
@@ -198,6 +202,9 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
         "other of "
         "them "
         "may show");
+  if (!coded.empty())
+    report.notes.push_back(fmt::format("plain colours are stored as logits, up to 1/255 off, and more at outlines: {}",
+                                       fmt::join(coded, ", ")));
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   if (report.one_folder) {
     const BakedObject& object = *nodes.front().object;

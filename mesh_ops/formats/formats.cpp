@@ -4,9 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/meshes/gltf_scene.h"
+#include "mesh_ops/formats/meshes/obj_scene.h"
+#include "mesh_ops/formats/meshes/ply_scene.h"
 #include "mesh_ops/formats/mobilenerf/baked_files.h"
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
@@ -84,6 +88,28 @@ ExportReport write_nerf2mesh(const Scene& scene, const fs::path& folder, const E
   return report;
 }
 
+// Whether a path is a file with this extension that is not part of a folder of another format.
+template <const char* Extension>
+bool is_single_file(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::error_code error;
+  return extension == Extension && fs::is_regular_file(path, error) && !fs::exists(path.parent_path() / "mlp.json");
+}
+
+// One node, named after the file.
+template <std::shared_ptr<const BakedObject> (*Read)(const fs::path&)>
+Scene read_single_file(const fs::path& file, const ReadOptions& /*not for meshes*/, const Progress& progress) {
+  progress.at("reading " + file.filename().string(), 0);
+  Node node;
+  node.name = file.stem().string();
+  node.object = Read(file);
+  return with_added({}, node, NodeId::none, 0);
+}
+
+constexpr char obj_extension[] = ".obj", glb_extension[] = ".glb", gltf_extension[] = ".gltf", ply_extension[] = ".ply";
+
 constexpr Format::Folder nerf2mesh_folder{has_nerf2mesh_decoder, is_nerf2mesh_file_name,
                                           [](const fs::path&) { return std::set<std::string>(); }};
 constexpr Format::Folder mobilenerf_folder{has_baked_decoder, is_baked_file_name,
@@ -102,6 +128,14 @@ constexpr Format table[] = {
      write_rebake, &rebake_folder},
     {nerf2mesh_format, "nerf2mesh", "only scenes of such folders", "mlp.json", true, true, is_nerf2mesh_folder,
      read_nerf2mesh, nerf2mesh_files, write_nerf2mesh, &nerf2mesh_folder},
+    {"obj", "OBJ", "textured meshes", obj_extension, false, true, is_single_file<obj_extension>,
+     read_single_file<read_obj_object>, obj_files, nullptr, nullptr},
+    {"glb", "glTF", "textured meshes", glb_extension, false, true, is_single_file<glb_extension>,
+     read_single_file<read_gltf_object>, gltf_files, nullptr, nullptr},
+    {"gltf", "glTF", "textured meshes", gltf_extension, false, true, is_single_file<gltf_extension>,
+     read_single_file<read_gltf_object>, gltf_files, nullptr, nullptr},
+    {"ply", "PLY", "textured or coloured meshes", ply_extension, false, true, is_single_file<ply_extension>,
+     read_single_file<read_ply_object>, ply_files, nullptr, nullptr},
 };
 
 }  // namespace
@@ -133,6 +167,17 @@ const char* written_formats_help() {
   return help.c_str();
 }
 
+const char* read_formats_help() {
+  static const std::string help = [] {
+    std::vector<std::string> folders, files;
+    for (const Format& format : formats())
+      if (format.read != nullptr)
+        (format.is_folder ? folders : files).emplace_back(format.is_folder ? format.title : format.marker);
+    return fmt::format("a folder ({}) or a file ({})", fmt::join(folders, ", "), fmt::join(files, ", "));
+  }();
+  return help.c_str();
+}
+
 const Format& format_named(const std::string& name) {
   for (const Format& format : formats())
     if (format.name == name && format.write != nullptr) return format;
@@ -149,6 +194,8 @@ Scene read_any(const fs::path& named, const ReadOptions& options, const Progress
       (format.is_folder ? folders : files).push_back(fmt::format("{} ({})", format.marker, format.title));
   if (fs::is_directory(path))
     throw FileError(path, fmt::format("is not a scene: it contains none of {}", fmt::join(folders, ", ")));
+  if (fs::exists(path.parent_path() / "mlp.json"))
+    throw FileError(path, "is part of a scene's folder; open the folder itself");
   throw FileError(path, files.empty() ? "is not a folder"
                                       : fmt::format("is neither a folder nor one of {}", fmt::join(files, ", ")));
 }

@@ -55,6 +55,9 @@ std::vector<std::string> written_formats();
 /// The formats that are written with their uses: "mobilenerf: for the published viewers; rebake: keeps every node".
 const char* written_formats_help();
 
+/// What import reads: "a folder (MobileNeRF, …) or a file (.obj, …)".
+const char* read_formats_help();
+
 /// Display name of a scene: the last component of scene_root().
 std::string folder_title(const std::filesystem::path& path);
 

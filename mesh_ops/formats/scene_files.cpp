@@ -21,7 +21,7 @@ namespace {
 // False for folders that cannot be examined, for want of permission or other reasons: nothing reads them either.
 bool is_scene(const fs::path& path) {
   try {
-    return format_at(path) != nullptr;
+    return fs::is_directory(path) && format_at(path) != nullptr;
   } catch (const fs::filesystem_error&) {
     return false;
   }
@@ -62,7 +62,13 @@ std::uint64_t content_hash_at(const fs::path& path) {
   const bool is_folder = fs::is_directory(root, error);
   if (is_folder && format_at(root) != nullptr) return folder_hash(path);
   if (camera_format_at(path) != nullptr) return camera_hash(path);
-  return is_folder ? folder_hash(path) : content_hash(read_file(path));
+  if (is_folder) return folder_hash(path);
+  const std::vector<fs::path> beside = scene_files(path);
+  if (beside.empty()) return content_hash(read_file(path));
+  std::string all = fmt::format("{:016x}\n", content_hash(read_file(path)));
+  for (const fs::path& file : beside)
+    all += fmt::format("{} {:016x}\n", file.generic_string(), content_hash(read_file(path.parent_path() / file)));
+  return content_hash(all);
 }
 
 void refuse_foreign_content(const fs::path& folder) {
@@ -101,10 +107,13 @@ void protect_scene(SourceGuard& guard, const fs::path& path) { guard.add(scene_r
 
 void protect_input(SourceGuard& guard, const fs::path& path, const std::string& role) {
   std::error_code error;
-  if (scene_root(path) == path && fs::is_regular_file(path, error))
-    guard.add_file(path, role);
-  else
-    protect_scene(guard, path);
+  if (scene_root(path) != path || !fs::is_regular_file(path, error)) return protect_scene(guard, path);
+  guard.add_file(path, role);
+  try {
+    for (const fs::path& file : scene_files(path)) guard.add_file(path.parent_path() / file, role);
+  } catch (const Error&) {
+    // A damaged file is protected itself; reading it reports the damage.
+  }
 }
 
 void protect_scene_contents(SourceGuard& guard, const fs::path& folder, const std::string& role) {

@@ -18,6 +18,7 @@ TEST(FuzzCorpus, EveryInputIsReadOrRejected) {
     EXPECT_NO_THROW(fuzz::read_obj_bytes(bytes)) << entry.path();
     EXPECT_NO_THROW(fuzz::read_json_bytes(bytes)) << entry.path();
     EXPECT_NO_THROW(fuzz::read_camera_bytes(bytes)) << entry.path();
+    EXPECT_NO_THROW(fuzz::read_mesh_bytes(bytes)) << entry.path();
     EXPECT_NO_THROW(fuzz::read_script_bytes(bytes)) << entry.path();
     ++inputs;
   }

@@ -13,11 +13,14 @@
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/camera_json.h"
 #include "mesh_ops/formats/cameras/coco_masks.h"
+#include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/mobilenerf/baked_positions_file.h"
 #include "mesh_ops/formats/mobilenerf/mlp_json.h"
 #include "mesh_ops/formats/mobilenerf/obj.h"
 #include "mesh_ops/formats/mobilenerf/rotations_file.h"
 #include "mesh_ops/formats/mobilenerf/rotations_json.h"
+#include "mesh_ops/formats/nerf2mesh/nerf2mesh_mlp.h"
+#include "mesh_ops/formats/scene_files.h"
 
 namespace rebake::fuzz {
 
@@ -135,6 +138,24 @@ void read_camera_bytes(std::string_view bytes) {
     place.with(fmt::format("{}/cameras{}", folder, extension), bytes.substr(1, length));
     const auto images = place.with(fmt::format("{}/images{}", folder, extension), bytes.substr(1 + length));
     use(camera_format_named("colmap"), images.parent_path());
+  }
+}
+
+void read_mesh_bytes(std::string_view bytes) {
+  static const Workplace place;
+  place.with("a.mtl", bytes);
+  for (const char* name : {"a.glb", "a.gltf", "a.ply", "a.obj"}) {
+    try {
+      const auto path = place.with(name, bytes);
+      for (const auto& file : scene_files(path)) static_cast<void>(file);
+      read_any(path, Axes::y_up);
+    } catch (const Error&) {
+    }
+  }
+  try {
+    const Nerf2MeshMlp mlp = read_nerf2mesh_mlp(bytes, "mlp.json");
+    if (!(read_nerf2mesh_mlp(write_nerf2mesh_mlp(mlp), "back.json").decoder == mlp.decoder)) std::abort();
+  } catch (const Error&) {
   }
 }
 

@@ -8,6 +8,7 @@ namespace rebake::fuzz {
 void read_obj_bytes(std::string_view bytes);
 void read_json_bytes(std::string_view bytes);    ///< mlp.json, rotations, baked geometry, cameras
 void read_camera_bytes(std::string_view bytes);  ///< every format of camera files
+void read_mesh_bytes(std::string_view bytes);    ///< glTF, PLY, OBJ with materials, mlp.json of nerf2mesh
 void read_script_bytes(std::string_view bytes);  ///< scripts without access to files
 
 }  // namespace rebake::fuzz

@@ -72,8 +72,8 @@ bool describes_folder(const FieldInfo& field) {
 std::string whole_title(const Import& edit) { return "Imported " + folder_title(edit.path); }
 
 REBAKE_DESCRIBE_EDIT(
-    Import, "Reads a MobileNeRF folder or a Rebake scene into the scene.", (auto& edit, auto& visit) {
-      visit("path", edit.path, Need::required, "folder to read");
+    Import, "Reads a scene or a textured mesh into the scene.", (auto& edit, auto& visit) {
+      visit("path", edit.path, Need::required, read_formats_help());
       visit("as", edit.as, Need::optional, "name of the new node; empty: the folder's name");
       visit("axes", edit.axes, Need::optional, "orientation of a MobileNeRF folder; Rebake scenes contain theirs");
       visit("half_direction", edit.half_direction, Need::optional,

@@ -13,6 +13,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/features/atlas/rotation_groups.h"
+#include "mesh_ops/features/distill/diffuse_network.h"
 #include "mesh_ops/index/footprint.h"
 
 namespace rebake {
@@ -170,7 +171,7 @@ void add_blocks(Composition& result, std::uint32_t number) {
 }  // namespace
 
 bool Composition::exact() const {
-  return teachers.size() == 1 && teachers.front()->rule == ColorRule::network &&
+  return !recoded && teachers.size() == 1 && teachers.front()->rule == ColorRule::network &&
          std::none_of(parts.begin(), parts.end(), [](const Part& p) { return p.bent || p.light; });
 }
 
@@ -272,7 +273,10 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
   Composition result;
   result.forward = true;
   std::vector<Piece> pieces;
-  for (const PlacedNode& placed : placed_nodes(scene)) {
+  std::vector<std::string> recoded;
+  const Scene networks = with_networks(scene, &recoded);
+  result.recoded = !recoded.empty();
+  for (const PlacedNode& placed : placed_nodes(networks)) {
     if (!placed.visible || !placed.node->object || placed.node->object->triangle_count() == 0) continue;
     progress.at("decomposing the scene", 0);
     add_parts(result, placed, lighting, pieces);

@@ -50,6 +50,7 @@ struct Composition {
   std::vector<std::uint32_t> faces;  ///< indices of faces in their page, in the order of blocks
   std::uint64_t opaque_texels = 0;
   bool forward = false;  ///< whether all parts are forward-facing
+  bool recoded = false;  ///< whether objects with plain colours were given a network (with_networks())
 
   /// Whether one decoder reproduces everything without a fit.
   bool exact() const;

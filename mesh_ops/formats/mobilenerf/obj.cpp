@@ -29,8 +29,8 @@ struct Corner {
 
 class Parser {
  public:
-  Parser(std::string_view text, const std::filesystem::path& name)
-      : at_(text.data()), end_(text.data() + text.size()), name_(name) {
+  Parser(std::string_view text, const std::filesystem::path& name, const ObjReading& reading)
+      : at_(text.data()), end_(text.data() + text.size()), name_(name), reading_(reading) {
     if (text.starts_with("\xEF\xBB\xBF")) at_ += 3;  // a byte-order mark
   }
 
@@ -44,7 +44,8 @@ class Parser {
       statement();
       at_ = next_;
     }
-    if (uvs_.empty() && !corners_.empty()) fail("faces without texture coordinates (vt): features cannot be looked up");
+    if (uvs_.empty() && !corners_.empty() && !reading_.missing_uvs)
+      fail("faces without texture coordinates (vt): features cannot be looked up");
     return finish();
   }
 
@@ -75,12 +76,27 @@ class Parser {
       face();
     } else if (key == "l" || key == "p") {
       note(Note::lines);
+    } else if (reading_.materials && (key == "usemtl" || key == "mtllib")) {
+      material(key == "mtllib");
     } else {
       constexpr std::array<std::string_view, 8> known{"o", "g", "s", "vn", "usemtl", "mtllib", "vp", "mg"};
       const bool is_known = std::find(known.begin(), known.end(), key) != known.end();
       if (!is_known) unknown_ = std::string(key.substr(0, 20));
       note(is_known ? Note::groups : Note::unknown);
     }
+  }
+
+  // Names may contain blanks.
+  void material(bool is_library) {
+    skip_blanks();
+    std::string name(at_, line_end_);
+    if (is_library) {
+      libraries_.push_back(std::move(name));
+      return;
+    }
+    const auto known = std::find(materials_.begin(), materials_.end(), name);
+    material_ = static_cast<std::uint32_t>(known - materials_.begin());
+    if (known == materials_.end()) materials_.push_back(std::move(name));
   }
 
   // Kinds of skipped or decided things; each is reported with its first line and its count.
@@ -95,7 +111,8 @@ class Parser {
 
   std::vector<std::string> assumptions() const {
     const std::array<std::string, 6> texts{
-        "objects, groups, materials and normals are skipped; all faces are one mesh",
+        reading_.materials ? "objects, groups and normals are skipped; all faces are one object"
+                           : "objects, groups, materials and normals are skipped; all faces are one mesh",
         fmt::format("unknown statements such as \"{}\" are skipped", printable_word(unknown_)),
         "numbers after x y z (vertex colours or weights) are skipped",
         "lines and points are skipped",
@@ -153,10 +170,14 @@ class Parser {
     for (skip_blanks(); at_ != line_end_ && *at_ != '#'; skip_blanks()) {
       Corner corner{};
       corner.position = index(positions_.size(), "vertex");
-      if (at_ == line_end_ || *at_ != '/') fail("a face has no texture coordinates (vt): write f v/vt v/vt v/vt");
-      ++at_;
-      if (at_ == line_end_ || *at_ == '/') fail("a face has no texture coordinates (vt): write f v/vt v/vt v/vt");
-      corner.uv = index(uvs_.size(), "vt");
+      const bool has_slash = at_ != line_end_ && *at_ == '/';
+      if (has_slash) ++at_;
+      if (has_slash && at_ != line_end_ && *at_ != '/')
+        corner.uv = index(uvs_.size(), "vt");
+      else if (reading_.missing_uvs)
+        corner.uv = unused;
+      else
+        fail("a face has no texture coordinates (vt): write f v/vt v/vt v/vt");
       if (at_ != line_end_ && *at_ == '/') {
         ++at_;
         index(unused - 1, "normal");
@@ -164,13 +185,15 @@ class Parser {
       if (at_ != line_end_ && *at_ != ' ' && *at_ != '\t')
         fail(fmt::format("\"{}\" does not belong in a face", word_at(at_)));
       corners_.push_back(corner);
-      highest_index_ = std::max(highest_index_, std::max(corner.position, corner.uv));
+      highest_index_ = std::max(highest_index_, corner.position);
+      if (corner.uv != unused) highest_index_ = std::max(highest_index_, corner.uv);
     }
     const std::size_t count = corners_.size() - first;
     if (count < 3) fail("a face needs at least three corners");
     only_triangles_ = only_triangles_ && count == 3;
     face_lines_.push_back(line_);
     face_ends_.push_back(corners_.size());
+    if (reading_.materials) material_of_.push_back(material_);
   }
 
   CutPolygon cut_face(const std::vector<Vec3>& corners, std::size_t line) const {
@@ -184,6 +207,7 @@ class Parser {
   // Cuts all polygons into triangles.
   void cut_polygons() {
     std::vector<Corner> cut;
+    std::vector<std::uint32_t> material_of;
     cut.reserve(corners_.size());
     std::size_t first = 0;
     std::vector<Vec3> places;
@@ -204,9 +228,11 @@ class Parser {
       if (polygon.shape == PolygonShape::crossing) note(Note::crossing, face_lines_[f]);
       for (const auto& triangle : polygon.triangles)
         for (const std::size_t corner : triangle) cut.push_back(corners_[kept[corner]]);
+      if (reading_.materials) material_of.insert(material_of.end(), polygon.triangles.size(), material_of_[f]);
       first = face_ends_[f];
     }
     corners_ = std::move(cut);
+    material_of_ = std::move(material_of);
   }
 
   [[noreturn]] void fail_range() const {
@@ -223,7 +249,20 @@ class Parser {
     throw FileError(name_, "has a face out of range");
   }
 
+  // Gives corners without texture coordinates a common one.
+  void fill_missing_uvs() {
+    bool any = false;
+    for (Corner& corner : corners_)
+      if (corner.uv == unused) {
+        corner.uv = static_cast<std::uint32_t>(uvs_.size());
+        any = true;
+      }
+    if (any) highest_index_ = std::max(highest_index_, static_cast<std::uint32_t>(uvs_.size()));
+    if (any) uvs_.emplace_back(0, 0);
+  }
+
   ObjMesh finish() {
+    fill_missing_uvs();
     if (!corners_.empty() && highest_index_ >= std::min(positions_.size(), uvs_.size()))
       if (std::any_of(corners_.begin(), corners_.end(),
                       [&](const Corner& c) { return c.position >= positions_.size() || c.uv >= uvs_.size(); }))
@@ -233,6 +272,9 @@ class Parser {
     mesh.assumptions = assumptions();
     mesh.needs_repair = notes_[static_cast<std::size_t>(Note::lines)].count > 0 ||
                         notes_[static_cast<std::size_t>(Note::concave)].count > 0;
+    mesh.libraries = std::move(libraries_);
+    if (reading_.materials) mesh.materials = std::move(materials_);
+    mesh.material_of = std::move(material_of_);
     mesh.faces.resize(corners_.size() / 3);
     const bool paired =
         positions_.size() == uvs_.size() &&
@@ -262,7 +304,11 @@ class Parser {
   const char* next_ = nullptr;
   const char* line_end_ = nullptr;
   const std::filesystem::path& name_;
+  ObjReading reading_;
   std::size_t line_ = 0;
+  std::vector<std::string> libraries_, materials_{""};
+  std::uint32_t material_ = 0;              // index in materials_ of the faces that follow
+  std::vector<std::uint32_t> material_of_;  // per face, if materials are read
   std::vector<Vec3> positions_;
   std::vector<Vec2> uvs_;
   std::vector<Corner> corners_;
@@ -320,10 +366,10 @@ std::string with_joined_lines(std::string_view text) {
 
 }  // namespace
 
-ObjMesh read_obj(std::string_view text, const std::filesystem::path& name) {
+ObjMesh read_obj(std::string_view text, const std::filesystem::path& name, const ObjReading& reading) {
   if (text.find("\\\n") == std::string_view::npos && text.find("\\\r\n") == std::string_view::npos)
-    return Parser(text, name).run();
-  return Parser(with_joined_lines(text), name).run();
+    return Parser(text, name, reading).run();
+  return Parser(with_joined_lines(text), name, reading).run();
 }
 
 std::string write_obj(const std::vector<Vec3>& positions, const std::vector<Vec2>& uvs, const std::vector<Face>& faces,

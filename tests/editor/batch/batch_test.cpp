@@ -55,9 +55,15 @@ TEST_F(Batch, ResultsMatchASingleRun) {
                             .c_str()),
             0);
   EXPECT_EQ(folder_bytes(options.out / "b"), folder_bytes(alone));
-  const auto once = folder_bytes(options.out);
+  // Except the logs, which say that folders were replaced.
+  const auto results = [&] {
+    auto files = folder_bytes(options.out);
+    std::erase_if(files, [](const auto& file) { return file.first.ends_with(".log"); });
+    return files;
+  };
+  const auto once = results();
   run();
-  EXPECT_EQ(folder_bytes(options.out), once) << "a second run gives the same bytes";
+  EXPECT_EQ(results(), once) << "a second run gives the same bytes";
 }
 
 TEST_F(Batch, ResumeRemembersMissedPsnr) {
