@@ -29,6 +29,8 @@
   X(Place) \
   X(Drop) \
   X(Align) \
+  X(Register) \
+  X(SetLength) \
   X(Select) \
   X(SelectPicture) \
   X(SelectConnected) \

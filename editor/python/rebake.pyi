@@ -278,6 +278,24 @@ class Document:
         axis: axis of the world
         to: lower ends, centres or upper ends of the boxes; spread: equal gaps
         """
+    def register(self, *, node: Node, to: Node | None = None, points: Sequence[Sequence[float]] = [], onto: Sequence[Sequence[float]] = [], scale: bool = True, refine: bool = True, overlap: float | None = None, samples: int = 20000) -> None:
+        """Moves, rotates and scales a node onto another capture of the same place: by pairs of points, then by the opaque surfaces that overlap (trimmed ICP).
+
+        node: node that moves
+        to: node that stays; default: all other visible objects
+        points: at least three points of the node; default: it is nearly in place
+        onto: the same points of the capture that stays
+        scale: change the size, too
+        refine: refine by the surfaces
+        overlap: share of the node's surface that the other capture has, too; default: found
+        samples: points of the node's surface, 1000 to 1000000; five times as many of the other
+        """
+    def set_length(self, *, points: Sequence[Sequence[float]], length: float) -> None:
+        """Scales the whole scene about the origin, with its views and ground, so that two points get a known distance.
+
+        points: two points
+        length: their real distance (scene units)
+        """
     def select(self, *, node: Node | None = None, all: bool = False, none: bool = False, invert: bool = False, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, connected: Vector | None = None, texture_set: int | None = None, saved: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", frame: Literal["world", "node", "bounds"] = "world") -> dict[str, NDArray[np.bool_]]:
         """Selects triangles by region (of their centres), connectivity, texture set or stored selection.
 

@@ -1,0 +1,120 @@
+#include "editor/edits/nodes/register.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "editor/edits/describe_edit.h"
+#include "mesh_ops/registration/trimmed_icp.h"
+
+namespace rebake {
+
+namespace {
+
+constexpr double certain_spread = 0.05;
+
+void add_ids(const NodePtr& node, std::set<NodeId>& ids) {
+  ids.insert(node->id);
+  for (const NodePtr& child : node->children) add_ids(child, ids);
+}
+
+struct Sides {
+  std::vector<PlacedNode> moved, fixed;
+};
+
+// The objects that move and those that stay.
+Sides sides_of(const Scene& scene, const Register& edit) {
+  std::set<NodeId> moved, fixed;
+  add_ids(find(scene, edit.node.id), moved);
+  if (edit.to) add_ids(find(scene, edit.to->id), fixed);
+  Sides sides;
+  for (PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object) continue;
+    const bool moves = moved.contains(placed.node->id), stays = edit.to ? fixed.contains(placed.node->id) : !moves;
+    if (moves && stays) throw FieldError("to", "is the node itself, or in it");
+    if (moves)
+      sides.moved.push_back(std::move(placed));
+    else if (stays)
+      sides.fixed.push_back(std::move(placed));
+  }
+  if (sides.moved.empty()) throw FieldError("node", "has no visible object");
+  if (sides.fixed.empty()) throw FieldError("to", "has no visible object that could stay");
+  return sides;
+}
+
+std::string words_of(const Similarity& motion) {
+  return fmt::format("rotated by {:.4g}°, scaled by {:.6g}, moved by {:.6g}", motion.degrees(), motion.scale,
+                     motion.shift.norm());
+}
+
+// The motion by the pairs; the identity without pairs.
+Similarity motion_by_pairs(const Register& edit, Report& report) {
+  if (edit.points.points.empty() && edit.onto.points.empty()) return {};
+  const PairFit fit = fit_pairs(edit.points.points, edit.onto.points, edit.scale);
+  std::string residuals;
+  for (const double residual : fit.residuals)
+    residuals += fmt::format("{}{:.4g}", residuals.empty() ? "" : ", ", residual);
+  report.lines.push_back(
+      fmt::format("pairs: {}; residuals {} (root mean square {:.4g})", words_of(fit.motion), residuals, fit.rms));
+  if (fit.spread < certain_spread)
+    report.lines.push_back(
+        fmt::format("warning: the points are nearly on a line ({:.2g} of its length across): the "
+                    "rotation about it is uncertain",
+                    fit.spread));
+  return fit.motion;
+}
+
+}  // namespace
+
+Outcome apply(const Scene& scene, const Register& edit, const Progress& progress) {
+  const PlacedNode placed = editable_with_children(scene, edit.node.id);
+  if (edit.overlap && !(*edit.overlap >= 0.01 && *edit.overlap <= 1))
+    throw FieldError("overlap", "must lie between 0.01 and 1");
+  if (edit.samples < 1000 || edit.samples > 1'000'000) throw FieldError("samples", "must lie between 1000 and 1000000");
+  if (!edit.refine && edit.points.points.empty()) throw FieldError("points", "must be given, unless refine is true");
+  const Sides sides = sides_of(scene, edit);
+  Report report;
+  Affine motion = motion_by_pairs(edit, report).affine();
+  if (edit.refine) {
+    SurfaceSamples moved = sampled_surfaces(sides.moved, static_cast<std::size_t>(edit.samples), 1);
+    const SurfaceSamples fixed = sampled_surfaces(sides.fixed, 5 * static_cast<std::size_t>(edit.samples), 2);
+    for (Vec3& point : moved.points) point = motion * point;
+    for (Vec3& normal : moved.normals) normal = (motion.linear() * normal).normalized();
+    const IcpResult fit = trimmed_icp(moved, fixed, {edit.scale, edit.overlap}, progress);
+    motion = fit.motion.affine() * motion;
+    report.lines.push_back(fmt::format(
+        "surfaces: {}; {:.0f} % overlap, distance {:.4g} (root mean square), {} iterations{}", words_of(fit.motion),
+        fit.overlap * 100, fit.rms, fit.iterations, fit.converged ? "" : ", not converged"));
+    if (fit.free_directions > 0)
+      report.lines.push_back(
+          fmt::format("warning: the overlapping surfaces slide in {} directions, which the pairs alone decide",
+                      fit.free_directions));
+  }
+  if (!motion.matrix().allFinite()) throw EditError("the motion is not finite");
+  const NodeId parent = parent_of(scene, edit.node.id);
+  const Affine parent_to_world = parent == NodeId::none ? Affine(Affine::Identity()) : present(scene, parent).to_world;
+  const Affine to_parent = parent_to_world.inverse() * motion * placed.to_world;
+  Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
+  check_subtree(result, edit.node.id);
+  return {std::move(result), std::move(report)};
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Register,
+    "Moves, rotates and scales a node onto another capture of the same place: by pairs of points, then by the opaque "
+    "surfaces that overlap (trimmed ICP).",
+    (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::required, "node that moves");
+      visit("to", edit.to, Need::optional, "node that stays; default: all other visible objects");
+      visit("points", edit.points, Need::optional, "at least three points of the node; default: it is nearly in place");
+      visit("onto", edit.onto, Need::optional, "the same points of the capture that stays");
+      visit("scale", edit.scale, Need::optional, "change the size, too");
+      visit("refine", edit.refine, Need::optional, "refine by the surfaces");
+      visit("overlap", edit.overlap, Need::optional,
+            "share of the node's surface that the other capture has, too; default: found");
+      visit("samples", edit.samples, Need::optional,
+            "points of the node's surface, 1000 to 1000000; five times as many of the other");
+    })
+
+}  // namespace rebake
