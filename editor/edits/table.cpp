@@ -45,6 +45,7 @@
   X(Fill) \
   X(StoreSelection) \
   X(DeleteSelected) \
+  X(DeleteAndFill) \
   X(Separate) \
   X(Merge) \
   X(Erase) \

@@ -427,6 +427,11 @@ class Document:
 
         node: only this node; default: all visible, unlocked objects
         """
+    def delete_and_fill(self, *, node: Node | None = None) -> None:
+        """Deletes the selected triangles and closes the holes that they leave: the surface and its features continue smoothly from the opaque triangles around.
+
+        node: only this node; default: all visible, unlocked objects
+        """
     def separate(self, *, node: Node, as_: str = "") -> None:
         """Moves the selected triangles of a node into a new node after it.
 

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr FileDialogText questions[] = {
-    {FileDialogPurpose::open, "Open", "A MobileNeRF folder, a Rebake scene, or a project (.rebake).", "Open", "",
+    {FileDialogPurpose::open, "Open", "A scene's folder, a textured mesh, or a project (.rebake).", "Open", "",
      ".rebake"},
     {FileDialogPurpose::save_project, "Save project", "A file with all steps of the history.", "Save", ".rebake"},
     {FileDialogPurpose::save_scene, "Save Rebake scene", "A folder with all nodes, without the history.", "Save", ""},

@@ -23,6 +23,7 @@
 #include "editor/edits/select/select.h"
 #include "editor/edits/select/select_connected.h"
 #include "editor/edits/select/shrink.h"
+#include "editor/edits/shape/delete_and_fill.h"
 #include "editor/edits/shape/delete_selected.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
@@ -108,6 +109,8 @@ bool selects_triangles(ToolKind tool) {
   return tool == ToolKind::rectangle || tool == ToolKind::lasso || tool == ToolKind::polygon ||
          tool == ToolKind::brush || tool == ToolKind::flood || tool == ToolKind::volume || tool == ToolKind::erase;
 }
+
+void remove_and_fill(EditorContext& editor) { editor.edit_scope(DeleteAndFill{}); }
 
 void remove(EditorContext& editor) {
   if (has_selection(editor) && !editor.scope(true).empty())
@@ -229,7 +232,7 @@ void store_view(ToolContext& editor, const std::string& name) {
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
-      {"File", "Open...", "Ctrl+O", "Ctrl+O", "Opens a MobileNeRF folder, a Rebake scene or a project.", always,
+      {"File", "Open...", "Ctrl+O", "Ctrl+O", "Opens a scene, a textured mesh or a project.", always,
        ask<FileDialogPurpose::open>},
       {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_scene, save},
       {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", "Saves every step to another file.", has_scene,
@@ -260,6 +263,8 @@ const std::vector<Command>& command_table() {
        [](EditorContext& editor) { editor.dialogs.palette = true; }},
       {"Edit", "Delete", "Delete", "X Delete",
        "Deletes the selected triangles, or the picked nodes if none are selected.", has_either, remove},
+      {"Edit", "Delete and fill holes", "Ctrl+Delete", "Ctrl+Delete",
+       "Deletes the selected triangles and closes the holes that they leave.", has_selection, remove_and_fill},
       {"Edit", "Remove picked nodes", "Shift+Delete", "Shift+Delete",
        "Removes the picked nodes, even if triangles are selected.", has_active, each_active<Remove>},
       {"Edit", "Duplicate", "Ctrl+D", "Shift+D", "Copies the picked nodes and picks the copies.", has_active,

@@ -1,0 +1,60 @@
+#include "editor/edits/shape/delete_and_fill.h"
+
+#include <fmt/format.h>
+
+#include "editor/edits/describe_edit.h"
+#include "mesh_ops/fill/fill_holes.h"
+
+namespace rebake {
+
+Outcome apply(const Scene& scene, const DeleteAndFill& edit, const Progress& progress) {
+  Scene result = scene;
+  Report report;
+  for (const PlacedNode& placed : objects_with_selection(scene, edit.node)) {
+    const TriangleSet& selection = *placed.node->selection;
+    const FilledHoles filled = filled_holes(*placed.node->object, selection, progress);
+    const std::string& name = placed.node->name;
+    if (!filled.object)
+      throw EditError(fmt::format("\"{}\": all triangles are selected, so no border is left to fill from", name));
+    if (filled.holes == 0)
+      throw EditError(
+          fmt::format("\"{}\": the selected triangles share no closed border with opaque ones: grow the "
+                      "selection up to the surface around, or delete them",
+                      name));
+    result = with_changed(result, placed.node->id, [&](Node& node) {
+      keep_triangles(node, selection, false);
+      // The patches come last; stored selections do not contain them.
+      for (auto& [stored, saved] : node.saved_selections) {
+        TriangleSet longer = *saved;
+        longer.resize(filled.object->triangle_count(), 0);
+        saved = std::make_shared<const TriangleSet>(std::move(longer));
+      }
+      node.object = filled.object;
+    });
+    report.lines.push_back(fmt::format(
+        "\"{}\": {} triangles removed; {} holes closed with {} triangles of area {:.4g} and {} texels; colours at the "
+        "border "
+        "differ by {:.1f} of 255 (root mean square) from those that continue",
+        name, filled.removed, filled.holes, filled.triangles, filled.area, filled.texels, 255 * filled.color_step));
+    if (filled.open_edges > 0)
+      report.lines.push_back(
+          fmt::format("note: {} edges of the border form no closed loop and stay open", filled.open_edges));
+    if (filled.unfilled > 0)
+      report.lines.push_back(fmt::format(
+          "note: {} holes could not be closed: their borders cross themselves or are too long", filled.unfilled));
+  }
+  return {std::move(result), std::move(report)};
+}
+
+std::string done_words(const DeleteAndFill& /*edit*/) { return "Deleted and filled"; }
+
+REBAKE_DESCRIBE_EDIT(
+    DeleteAndFill,
+    "Deletes the selected triangles and closes the holes that they leave: the surface and its features continue "
+    "smoothly "
+    "from the opaque triangles around.",
+    (auto& edit, auto& visit) {
+      visit("node", edit.node, Need::optional, "only this node; default: all visible, unlocked objects");
+    })
+
+}  // namespace rebake

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/scene/object.h"
+
+namespace rebake {
+
+/// A filled object and what it took.
+struct FilledHoles {
+  std::shared_ptr<const BakedObject> object;  ///< the patches are its last texture set; null if nothing is left
+  std::size_t removed = 0;                    ///< triangles
+  std::size_t holes = 0, triangles = 0;       ///< closed holes, and their triangles
+  std::uint64_t texels = 0;                   ///< of the patches' triangles
+  double area = 0;                            ///< of the patches, in square object units
+  /// Root mean square difference of display colours (0 … 1) between the texels at the borders and the colours that the
+  /// patches continue from there, seen along the patches' normals.
+  double color_step = 0;
+  std::size_t open_edges = 0, unfilled = 0;  ///< border edges of no loop; loops that were not triangulated
+};
+
+/// Removes the flagged triangles and closes the holes that they leave. Surfaces continue smoothly (hole_patch()).
+/// Features are interpolated harmonically from the opaque texels at the border, so the patches keep their view
+/// dependence; they have no detail of their own. Texels are as large as those at the border.
+FilledHoles filled_holes(const BakedObject& object, const TriangleSet& removed, const Progress& progress = {});
+
+}  // namespace rebake
