@@ -46,6 +46,7 @@
   X(StoreSelection) \
   X(DeleteSelected) \
   X(DeleteAndFill) \
+  X(FillHoles) \
   X(Separate) \
   X(Merge) \
   X(Erase) \

@@ -432,6 +432,12 @@ class Document:
 
         node: only this node; default: all visible, unlocked objects
         """
+    def fill_holes(self, *, node: Node | None = None, longest: int = 300) -> None:
+        """Closes holes in the surface whose triangles around are all selected; shape and features continue smoothly from them.
+
+        node: only this node; default: all visible, unlocked objects
+        longest: edges of the longest border to close; the outline of a surface is longer
+        """
     def separate(self, *, node: Node, as_: str = "") -> None:
         """Moves the selected triangles of a node into a new node after it.
 

@@ -130,15 +130,16 @@ Vec3 normal_of(const HolePatch& patch) {
 
 }  // namespace
 
-FilledHoles filled_holes(const BakedObject& object, const TriangleSet& removed, const Progress& progress) {
-  if (object.any_rotations())
-    throw EditError("bends have rotated some of the object's triangles: fill its holes before bending it");
+namespace {
+
+// Removes the flagged triangles, and closes the loops of at most `longest` edges.
+FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const HoleLoops& borders, std::size_t longest,
+                   const Progress& progress) {
   FilledHoles result;
   result.removed = count(removed);
   const AlphaCode code = object.sets.front().texels->alpha_code();
   for (const TextureSet& set : object.sets)
     if (set.texels->alpha_code() != code) throw EditError("the object's textures store alpha in different ways");
-  const HoleLoops borders = hole_loops(object, removed, 1e-6 * object.bounds().diagonal().norm());
   result.open_edges = borders.open_edges;
   const Triangles triangles(object);
   std::vector<HolePatch> patches;
@@ -147,7 +148,7 @@ FilledHoles filled_holes(const BakedObject& object, const TriangleSet& removed, 
   for (const HoleLoop& loop : borders.loops) {
     progress.at("filling",
                 static_cast<double>(result.holes + result.unfilled) / static_cast<double>(borders.loops.size()));
-    HolePatch patch = loop.points.size() > longest_loop ? HolePatch() : hole_patch(loop);
+    HolePatch patch = loop.points.size() > longest ? HolePatch() : hole_patch(loop);
     std::vector<std::optional<Bytes>> border;
     const Vec3 view = patch.faces.empty() ? Vec3::Zero() : normal_of(patch);
     for (const auto& corners : loop.corners) {
@@ -171,8 +172,8 @@ FilledHoles filled_holes(const BakedObject& object, const TriangleSet& removed, 
     features.push_back(std::move(own));
   }
   result.color_step = steps.weight > 0 ? std::sqrt(steps.squares / steps.weight) : 0;
-  auto filled = std::make_shared<BakedObject>(object);
-  filled->sets.clear();
+  auto made = std::make_shared<BakedObject>(object);
+  made->sets.clear();
   std::size_t first = 0;
   for (const TextureSet& set : object.sets) {
     TriangleSet kept;
@@ -180,19 +181,37 @@ FilledHoles filled_holes(const BakedObject& object, const TriangleSet& removed, 
     first += kept.size();
     const std::size_t left = count(kept);
     if (left == kept.size())
-      filled->sets.push_back(set);
+      made->sets.push_back(set);
     else if (left > 0)
-      filled->sets.push_back({subset(set.soup, kept, 0, true), set.texels});
+      made->sets.push_back({subset(set.soup, kept, 0, true), set.texels});
   }
   const double texel = texel_size(triangles, borders.loops);
   if (!patches.empty() && texel > 0) {
-    filled->sets.push_back(textured_patches(patches, features, texel, code));
-    result.texels = filled->sets.back().texels->opaque_count();
+    made->sets.push_back(textured_patches(patches, features, texel, code));
+    result.texels = made->sets.back().texels->opaque_count();
   }
-  if (filled->sets.empty()) return result;
-  record_bodies(*filled, object);
-  result.object = std::move(filled);
+  if (made->sets.empty()) return result;
+  record_bodies(*made, object);
+  result.object = std::move(made);
   return result;
+}
+
+double weld_tolerance(const BakedObject& object) {
+  if (object.any_rotations())
+    throw EditError("bends have rotated some of the object's triangles: fill its holes before bending it");
+  return 1e-6 * object.bounds().diagonal().norm();
+}
+
+}  // namespace
+
+FilledHoles filled_holes(const BakedObject& object, const TriangleSet& removed, const Progress& progress) {
+  return filled(object, removed, hole_loops(object, removed, weld_tolerance(object)), longest_loop, progress);
+}
+
+FilledHoles filled_open_holes(const BakedObject& object, const TriangleSet& flagged, std::size_t longest,
+                              const Progress& progress) {
+  return filled(object, TriangleSet(flagged.size(), 0), open_loops(object, flagged, weld_tolerance(object)),
+                std::min(longest, longest_loop), progress);
 }
 
 }  // namespace rebake

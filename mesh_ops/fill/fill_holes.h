@@ -23,4 +23,9 @@ struct FilledHoles {
 /// dependence; they have no detail of their own. Texels are as large as those at the border.
 FilledHoles filled_holes(const BakedObject& object, const TriangleSet& removed, const Progress& progress = {});
 
+/// Closes holes that were there before: the open borders of the flagged triangles of at most `longest` edges. Removes
+/// nothing. Longer borders count as unfilled.
+FilledHoles filled_open_holes(const BakedObject& object, const TriangleSet& flagged, std::size_t longest,
+                              const Progress& progress = {});
+
 }  // namespace rebake

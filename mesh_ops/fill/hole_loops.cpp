@@ -13,8 +13,9 @@ namespace {
 using Edge = std::pair<std::uint32_t, std::uint32_t>;  // places, lower first
 
 struct Side {
-  bool removed = false, kept = false;
-  std::uint32_t outer = 0;  // place of the third corner of the kept triangle
+  std::uint32_t removed = 0, kept = 0;  // number of opaque triangles
+  std::uint32_t triangle = 0;           // the last kept one
+  std::uint32_t outer = 0;              // place of its third corner
 };
 
 struct Object {
@@ -75,29 +76,40 @@ std::vector<std::vector<std::uint32_t>> closed_loops(std::map<std::uint32_t, std
 
 }  // namespace
 
-HoleLoops hole_loops(const BakedObject& object, const TriangleSet& removed, double tolerance) {
-  const Object all = welded(object, tolerance);
+namespace {
+
+// The sides of all edges, and per place the corners there that count as kept.
+struct Edges {
   std::map<Edge, Side> sides;
-  std::map<std::uint32_t, std::vector<HoleLoop::Corner>> kept_corners;
-  for (std::uint32_t f = 0; f < removed.size(); ++f) {
+  std::map<std::uint32_t, std::vector<HoleLoop::Corner>> corners;
+};
+
+// `removed`: triangles on the far side of a border; nothing for open borders.
+Edges edges_of(const Object& all, const TriangleSet* removed) {
+  Edges edges;
+  for (std::uint32_t f = 0; f < all.opaque.size(); ++f) {
     if (all.opaque[f] == 0) continue;
+    const bool is_removed = removed != nullptr && (*removed)[f] != 0;
     const std::uint32_t* places = &all.corners.places[3 * std::size_t{f}];
     for (std::uint32_t k = 0; k < 3; ++k) {
       const std::uint32_t a = places[k], b = places[(k + 1) % 3];
-      if (removed[f] == 0) kept_corners[a].push_back({f, k});
+      if (!is_removed) edges.corners[a].push_back({f, k});
       if (a == b) continue;
-      Side& side = sides[std::minmax(a, b)];
-      if (removed[f] != 0) {
-        side.removed = true;
-      } else {
-        side.kept = true;
-        side.outer = places[(k + 2) % 3];
-      }
+      Side& side = edges.sides[std::minmax(a, b)];
+      ++(is_removed ? side.removed : side.kept);
+      if (is_removed) continue;
+      side.triangle = f;
+      side.outer = places[(k + 2) % 3];
     }
   }
+  return edges;
+}
+
+template <class IsBorder>
+HoleLoops loops_of(const Object& all, const Edges& edges, IsBorder is_border) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> next;
-  for (const auto& [edge, side] : sides) {
-    if (!side.removed || !side.kept) continue;
+  for (const auto& [edge, side] : edges.sides) {
+    if (!is_border(side)) continue;
     next[edge.first].push_back(edge.second);
     next[edge.second].push_back(edge.first);
   }
@@ -106,14 +118,28 @@ HoleLoops hole_loops(const BakedObject& object, const TriangleSet& removed, doub
     HoleLoop loop;
     for (std::size_t k = 0; k < places.size(); ++k) {
       loop.points.push_back(all.points[places[k]]);
-      loop.outer_points.push_back(all.points[sides.at(std::minmax(places[k], places[(k + 1) % places.size()])).outer]);
-      loop.corners.push_back(kept_corners[places[k]]);
+      loop.outer_points.push_back(
+          all.points[edges.sides.at(std::minmax(places[k], places[(k + 1) % places.size()])).outer]);
+      loop.corners.push_back(edges.corners.at(places[k]));
     }
     result.loops.push_back(std::move(loop));
   }
   std::stable_sort(result.loops.begin(), result.loops.end(),
                    [](const HoleLoop& a, const HoleLoop& b) { return a.points.size() > b.points.size(); });
   return result;
+}
+
+}  // namespace
+
+HoleLoops hole_loops(const BakedObject& object, const TriangleSet& removed, double tolerance) {
+  const Object all = welded(object, tolerance);
+  return loops_of(all, edges_of(all, &removed), [](const Side& side) { return side.removed > 0 && side.kept > 0; });
+}
+
+HoleLoops open_loops(const BakedObject& object, const TriangleSet& flagged, double tolerance) {
+  const Object all = welded(object, tolerance);
+  return loops_of(all, edges_of(all, nullptr),
+                  [&](const Side& side) { return side.kept == 1 && flagged[side.triangle] != 0; });
 }
 
 }  // namespace rebake

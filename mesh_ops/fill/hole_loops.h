@@ -29,4 +29,7 @@ struct HoleLoops {
 /// loops are separated there.
 HoleLoops hole_loops(const BakedObject& object, const TriangleSet& removed, double tolerance);
 
+/// The open borders of the flagged triangles: edges that a single opaque triangle has, which is flagged.
+HoleLoops open_loops(const BakedObject& object, const TriangleSet& flagged, double tolerance);
+
 }  // namespace rebake

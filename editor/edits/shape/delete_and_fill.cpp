@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "editor/edits/describe_edit.h"
-#include "mesh_ops/fill/fill_holes.h"
+#include "editor/edits/shape/fill_report.h"
 
 namespace rebake {
 
@@ -23,25 +23,9 @@ Outcome apply(const Scene& scene, const DeleteAndFill& edit, const Progress& pro
                       name));
     result = with_changed(result, placed.node->id, [&](Node& node) {
       keep_triangles(node, selection, false);
-      // The patches come last; stored selections do not contain them.
-      for (auto& [stored, saved] : node.saved_selections) {
-        TriangleSet longer = *saved;
-        longer.resize(filled.object->triangle_count(), 0);
-        saved = std::make_shared<const TriangleSet>(std::move(longer));
-      }
-      node.object = filled.object;
+      set_filled(node, filled);
     });
-    report.lines.push_back(fmt::format(
-        "\"{}\": {} triangles removed; {} holes closed with {} triangles of area {:.4g} and {} texels; colours at the "
-        "border "
-        "differ by {:.1f} of 255 (root mean square) from those that continue",
-        name, filled.removed, filled.holes, filled.triangles, filled.area, filled.texels, 255 * filled.color_step));
-    if (filled.open_edges > 0)
-      report.lines.push_back(
-          fmt::format("note: {} edges of the border form no closed loop and stay open", filled.open_edges));
-    if (filled.unfilled > 0)
-      report.lines.push_back(fmt::format(
-          "note: {} holes could not be closed: their borders cross themselves or are too long", filled.unfilled));
+    report_filling(name, filled, report);
   }
   return {std::move(result), std::move(report)};
 }

@@ -42,21 +42,21 @@ class CocoMasksTest : public ::testing::Test {
   std::vector<PhotoCamera> cameras_;
 };
 
-const std::vector<std::uint8_t> expected{0, 3, 0, 0,  //
-                                         0, 3, 0, 0,  //
-                                         3, 0, 0, 3};
+const std::vector<std::uint8_t> coco_mask{0, 3, 0, 0,  //
+                                          0, 3, 0, 0,  //
+                                          3, 0, 0, 3};
 
 TEST_F(CocoMasksTest, RunsGoDownTheColumns) {
   const CocoMasks masks = read(file({2, 3, 6, 1}));
   EXPECT_EQ(masks.mask(0).width, 4);
   EXPECT_EQ(masks.mask(0).height, 3);
-  EXPECT_EQ(masks.mask(0).labels, expected);
+  EXPECT_EQ(masks.mask(0).labels, coco_mask);
   EXPECT_FALSE(masks.has(1));
 }
 
 TEST_F(CocoMasksTest, RunsAsText) {
   // 2, 3, 6, and 1 as the difference to the run before the last: 1 − 3 = −2.
-  EXPECT_EQ(read(file("236N")).mask(0).labels, expected);
+  EXPECT_EQ(read(file("236N")).mask(0).labels, coco_mask);
   // 100 = 4 + 3 · 32 takes two characters.
   json wide = file("0T3");
   wide["annotations"][0]["segmentation"]["size"] = {10, 10};

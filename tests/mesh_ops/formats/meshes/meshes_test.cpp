@@ -48,12 +48,12 @@ std::optional<std::array<int, 3>> shown_at(const Scene& scene, double x, double 
   return std::nullopt;
 }
 
-constexpr std::array<int, 3> red{255, 0, 0}, green{0, 255, 0}, blue{0, 0, 255};
+constexpr std::array<int, 3> red_bytes{255, 0, 0}, green_bytes{0, 255, 0}, blue_bytes{0, 0, 255};
 
 void expect_quarters(const Scene& scene, const std::string& what) {
-  EXPECT_EQ(shown_at(scene, -0.5, 0.5), red) << what;
-  EXPECT_EQ(shown_at(scene, 0.5, 0.5), green) << what;
-  EXPECT_EQ(shown_at(scene, -0.5, -0.5), blue) << what;
+  EXPECT_EQ(shown_at(scene, -0.5, 0.5), red_bytes) << what;
+  EXPECT_EQ(shown_at(scene, 0.5, 0.5), green_bytes) << what;
+  EXPECT_EQ(shown_at(scene, -0.5, -0.5), blue_bytes) << what;
   EXPECT_EQ(shown_at(scene, 0.5, -0.5), std::nullopt) << what;
 }
 
@@ -138,9 +138,9 @@ TEST_F(Meshes, ImagesRepeat) {
   write_text(path("square.mtl"), "newmtl picture\nmap_Kd image.png\n");
   const Scene scene = read("square.obj");
   for (const double shift : {0.0, 1.0}) {
-    EXPECT_EQ(shown_at(scene, -0.75 + shift, 0.5), red);
-    EXPECT_EQ(shown_at(scene, -0.25 + shift, 0.5), green);
-    EXPECT_EQ(shown_at(scene, -0.75 + shift, -0.5), blue);
+    EXPECT_EQ(shown_at(scene, -0.75 + shift, 0.5), red_bytes);
+    EXPECT_EQ(shown_at(scene, -0.25 + shift, 0.5), green_bytes);
+    EXPECT_EQ(shown_at(scene, -0.75 + shift, -0.5), blue_bytes);
   }
   text.replace(text.find("vt 2 -3"), 7, "vt 2e5 0");
   EXPECT_NE(problem("square.obj", text).find("repeats"), std::string::npos);
@@ -178,8 +178,8 @@ TEST_F(Meshes, GltfTransformsAndFactors) {
   root["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.25, 1, 1, 1};
   write_text(path("square.gltf"), root.dump());
   const Scene scene = read("square.gltf");
-  EXPECT_EQ(shown_at(scene, 10 - 1, 1), green);
-  EXPECT_EQ(shown_at(scene, 10 + 1, -1), blue);
+  EXPECT_EQ(shown_at(scene, 10 - 1, 1), green_bytes);
+  EXPECT_EQ(shown_at(scene, 10 + 1, -1), blue_bytes);
   // The factor is linear: 0.25 is 0.537 as a display colour.
   EXPECT_EQ(shown_at(scene, 10 - 1, -1),
             (std::array<int, 3>{static_cast<int>(std::lround(255 * to_display(0.25))), 0, 0}));
@@ -188,8 +188,8 @@ TEST_F(Meshes, GltfTransformsAndFactors) {
   root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
       {"scale", {0.5, 1}}};
   write_text(path("square.gltf"), root.dump());
-  EXPECT_EQ(shown_at(read("square.gltf"), 0.9, 0.5), red);
-  EXPECT_EQ(shown_at(read("square.gltf"), 0.9, -0.5), blue);
+  EXPECT_EQ(shown_at(read("square.gltf"), 0.9, 0.5), red_bytes);
+  EXPECT_EQ(shown_at(read("square.gltf"), 0.9, -0.5), blue_bytes);
 }
 
 const std::string square_ply = R"(ply

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "editor/edits/support.h"
+#include "mesh_ops/fill/fill_holes.h"
+
+namespace rebake {
+
+/// Appends what filling the holes of a node did.
+void report_filling(const std::string& node, const FilledHoles& filled, Report& report);
+
+/// Gives a node its filled object. The patches come last, so stored selections, which do not contain them, only grow.
+void set_filled(Node& node, const FilledHoles& filled);
+
+}  // namespace rebake
