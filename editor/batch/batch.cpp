@@ -38,6 +38,12 @@ using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
 // Folder of the batch's own files: per scene a mark when it is done, and the log of its process.
+// Name of a scene's result: that of its folder, or of its file without the extension.
+std::string scene_title(const fs::path& scene) {
+  std::error_code error;
+  return fs::is_regular_file(scene, error) ? scene.stem().string() : folder_title(scene);
+}
+
 fs::path state_folder(const BatchOptions& options) { return options.out / ".rebake-batch"; }
 
 // Hash of the inputs of a result: version, program, script, scene and variables, but not files that the script names. A
@@ -138,7 +144,7 @@ pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& 
                                  "--scene",
                                  scene.string(),
                                  "--out",
-                                 options.out / folder_title(scene),
+                                 options.out / scene_title(scene),
                                  "--list-files",
                                  files_list,
                                  "--protect",
@@ -238,18 +244,19 @@ ScenesByName matched_scenes(const BatchOptions& options) {
     std::vector<fs::path> folders;
     for (fs::path& path : found) {
       if (!path.has_filename()) path = path.parent_path();
-      // Skip files, and the output folder, which may be among the scenes.
-      if (fs::is_directory(path) && fs::weakly_canonical(path) != out) folders.push_back(path);
+      // Skip other files than meshes, and the output folder, which may be among the scenes.
+      if ((fs::is_directory(path) || format_at(path) != nullptr) && fs::weakly_canonical(path) != out)
+        folders.push_back(path);
     }
     for (const fs::path& folder : folders) {
-      if (fs::weakly_canonical(out / folder_title(folder)) == fs::weakly_canonical(folder))
+      if (fs::weakly_canonical(out / scene_title(folder)) == fs::weakly_canonical(folder))
         throw FieldError("--out", fmt::format("the result of {} would replace the scene itself; choose another folder",
                                               folder.string()));
       if (!options.report.empty() &&
-          fs::weakly_canonical(options.report) == fs::weakly_canonical(out / folder_title(folder)))
+          fs::weakly_canonical(options.report) == fs::weakly_canonical(out / scene_title(folder)))
         throw FieldError(
             "--report", fmt::format("the result of {} would replace the report; choose another file", folder.string()));
-      const auto [other, added] = by_name.emplace(folder_title(folder), folder);
+      const auto [other, added] = by_name.emplace(scene_title(folder), folder);
       if (!added && fs::weakly_canonical(other->second) != fs::weakly_canonical(folder))
         throw FieldError(
             "--scenes",
@@ -258,8 +265,24 @@ ScenesByName matched_scenes(const BatchOptions& options) {
                 other->second.string(), folder.string()));
     }
   }
-  if (by_name.empty()) throw FieldError("--scenes", "matches no scene folder; check the patterns");
+  if (by_name.empty()) throw FieldError("--scenes", "matches no scene; check the patterns");
   return by_name;
+}
+
+// Refuses to replace scenes that no batch wrote, and what links refer to.
+void check_results(const BatchOptions& options, const ScenesByName& scenes) {
+  for (const auto& [name, folder] : scenes) {
+    const fs::path result = options.out / name;
+    std::error_code error;
+    if (fs::is_symlink(result, error))
+      throw FieldError(
+          "--out", fmt::format("{} is a link, whose target would be replaced; choose another folder", result.string()));
+    const bool by_batch = fs::exists(state_folder(options) / (name + ".log"), error) ||
+                          fs::exists(state_folder(options) / (name + ".done"), error);
+    if (fs::exists(result, error) && !by_batch)
+      throw FieldError("--out",
+                       fmt::format("{} exists, but no batch wrote it; choose another folder", result.string()));
+  }
 }
 
 // See BatchScenes::guarded.
@@ -284,6 +307,7 @@ std::vector<std::pair<std::string, fs::path>> guarded_by(const BatchOptions& opt
 
 BatchScenes batch_scenes(const BatchOptions& options) {
   const ScenesByName by_name = matched_scenes(options);
+  check_results(options, by_name);
   BatchScenes result;
   result.protected_paths = guarded_by(options, by_name);
   SourceGuard sources;
@@ -370,7 +394,7 @@ class BatchRun {
   bool begin(std::size_t k) {
     BatchResult& result = results_[k];
     result.scene = scenes_[k];
-    result.name = folder_title(scenes_[k]);
+    result.name = scene_title(scenes_[k]);
     const fs::path mark = state_file(result, ".done");
     try {
       const std::string key = key_of(options_, program_, script_, scenes_[k]);

@@ -123,6 +123,18 @@ void check_photograph_options(const Rendering& options) {
   if (options.out.empty()) throw FieldError("-o", "is missing: name a folder for the pictures");
 }
 
+// Pictures named after photographs must replace neither other photographs or masks of the capture, nor what links
+// refer to.
+void refuse_replacing_capture(const std::filesystem::path& file, const std::filesystem::path& cameras) {
+  std::error_code error;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return;
+  const std::filesystem::path inside =
+      std::filesystem::weakly_canonical(file, error)
+          .lexically_relative(std::filesystem::weakly_canonical(capture_folder(cameras), error));
+  if (std::filesystem::is_symlink(file, error) || (!inside.empty() && *inside.begin() != ".."))
+    throw FileError(file, "exists in the capture's folder, or is a link; name a new folder for the pictures");
+}
+
 // Writes a picture for each camera of a file into a folder, named after the photographs.
 void render_photographs(const Rendering& options) {
   check_photograph_options(options);
@@ -148,6 +160,7 @@ void render_photographs(const Rendering& options) {
     files.push_back(std::filesystem::path(options.out) / (names[k] + ".png"));
     check_picture_path(files.back(), sources);
     refuse_replacing_work(files.back());
+    refuse_replacing_capture(files.back(), options.cameras);
   }
   std::filesystem::create_directories(options.out);
   const Lighting lighting = lit(scene, progress_bar());

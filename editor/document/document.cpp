@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/document/project.h"
+#include "editor/document/replaced_work.h"
 #include "mesh_ops/base/files.h"
 
 namespace rebake {
@@ -304,6 +305,7 @@ std::vector<std::string> Document::save(const fs::path& project, const Progress&
   if (!starts_empty_)
     throw Error("the document did not begin empty, so it cannot be saved as a project: import its contents instead");
   Journal::refuse_overwriting(project);
+  refuse_replacing_foreign(project);
   std::vector<History::Entry> entries = history_.entries();
   entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(history_.undo_count()), entries.end());
   return write_project(project, entries, sources(), progress);

@@ -65,7 +65,12 @@ std::vector<std::string> write_project(const fs::path& path, const std::vector<H
     }
     const auto read = source_of(entries[k].edit);
     if (!read) continue;
-    const fs::path source = fs::weakly_canonical(read->path);
+    // The last link of a file keeps its name, by which formats are recognised; caches link names to contents.
+    std::error_code not_there;
+    const fs::path source =
+        fs::is_regular_file(read->path, not_there)
+            ? fs::weakly_canonical(fs::absolute(read->path).parent_path()) / fs::path(read->path).filename()
+            : fs::weakly_canonical(read->path);
     const std::string relative = source.lexically_proximate(folder).generic_string();
     *source_field(root["edits"].back()) = relative;
     const json entry = {{"path", relative}, {"content", read->content}};

@@ -25,6 +25,17 @@ void refuse_replacing_work(const fs::path& path) {
     throw FileError(path, "is a project, whose edits would be lost; name another file");
 }
 
+void refuse_replacing_foreign(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error) || (fs::is_regular_file(path, error) && fs::file_size(path, error) == 0)) return;
+  if (!holds_project(path))
+    throw FileError(path, "exists and is not a project, so it is not replaced; choose another name");
+  const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
+  if (root.is_object() && root.contains("rebake_project") && root.at("rebake_project").is_number() &&
+      root.at("rebake_project") > project_version)
+    throw FileError(path, "was written by a newer version of Rebake, so it is not replaced; choose another name");
+}
+
 void refuse_replacing_more(const fs::path& path, std::size_t edits) {
   std::error_code error;
   if (!fs::exists(path, error)) return;

@@ -11,6 +11,9 @@ bool holds_project(const std::filesystem::path& path);
 /// For outputs that are no projects: throws FileError if the file is a journal or a project, whose edits would be lost.
 void refuse_replacing_work(const std::filesystem::path& path);
 
+/// For every project that is written: throws FileError if the file exists and is no project, or one of a newer version.
+void refuse_replacing_foreign(const std::filesystem::path& path);
+
 /// For projects that are written by name: throws FileError if the file exists and is another file than a project, a
 /// damaged project, one of a newer version, or one with more than `edits` edits.
 void refuse_replacing_more(const std::filesystem::path& path, std::size_t edits);

@@ -203,8 +203,9 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
         "them "
         "may show");
   if (!coded.empty())
-    report.notes.push_back(fmt::format("plain colours are stored as logits, up to 1/255 off, and more at outlines: {}",
-                                       fmt::join(coded, ", ")));
+    report.notes.push_back(fmt::format(
+        "plain colours are stored as logits: up to 1/255 off, and more at outlines and where a pixel mixes colours: {}",
+        fmt::join(coded, ", ")));
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   if (report.one_folder) {
     const BakedObject& object = *nodes.front().object;

@@ -52,6 +52,20 @@ double squared_error(const Points& from, const Points& onto, const Eigen::Matrix
   return ((motion.topLeftCorner<3, 3>() * from).colwise() + Vec3(motion.topRightCorner<3, 1>()) - onto).squaredNorm();
 }
 
+// Throws FieldError if exchanging two of the points makes a bad fit good.
+void refuse_swapped(const Points& a, const Points& b, bool with_scale, double rms, double extent) {
+  constexpr double bad = 0.02, good = 0.2;  // of the extent; of the residuals before
+  if (rms < bad * extent || a.cols() < 4) return;
+  for (Eigen::Index i = 0; i < a.cols(); ++i)
+    for (Eigen::Index j = i + 1; j < a.cols(); ++j) {
+      Points swapped = a;
+      swapped.col(i).swap(swapped.col(j));
+      const double error = squared_error(swapped, b, Eigen::umeyama(swapped, b, with_scale));
+      if (std::sqrt(error / static_cast<double>(a.cols())) < good * rms)
+        throw FieldError("onto", fmt::format("fit much better if pairs {} and {} are swapped", i + 1, j + 1));
+    }
+}
+
 }  // namespace
 
 Affine Similarity::affine() const {
@@ -90,6 +104,8 @@ PairFit fit_pairs(const std::vector<Vec3>& from, const std::vector<Vec3>& onto, 
     fit.rms += fit.residuals.back() * fit.residuals.back();
   }
   fit.rms = std::sqrt(fit.rms / static_cast<double>(from.size()));
+  fit.extent = b.norm() / std::sqrt(static_cast<double>(from.size()));
+  refuse_swapped(a, b, with_scale, fit.rms, fit.extent);
   return fit;
 }
 

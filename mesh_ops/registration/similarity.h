@@ -25,6 +25,7 @@ struct PairFit {
   Similarity motion;
   std::vector<double> residuals;  ///< distance per pair after the motion
   double rms = 0;                 ///< root mean square of the residuals
+  double extent = 0;              ///< root mean square distance of the fixed points from their centre
   /// Width of the points across their longest direction, relative to their length: below 0.05, the rotation about that
   /// direction is uncertain.
   double spread = 0;
@@ -32,7 +33,8 @@ struct PairFit {
 
 /// The similarity, or rigid motion without `with_scale`, that takes `from` to `onto` with the least squared residuals
 /// (Umeyama 1991). Throws FieldError, for the field "points" or "onto", for fewer than three pairs, lists of different
-/// lengths, points that coincide or lie on a line (within 1e-6 of their extent), and pairs that fit better mirrored.
+/// lengths, points that coincide or lie on a line (within 1e-6 of their extent), pairs that fit much better mirrored,
+/// and pairs of which two fit much better swapped.
 PairFit fit_pairs(const std::vector<Vec3>& from, const std::vector<Vec3>& onto, bool with_scale);
 
 }  // namespace rebake

@@ -400,6 +400,10 @@ void GpuScene::update(const Scene& scene, bool coded, const Lighting* lighting) 
       meshes_.emplace(key(set), upload(take_mesh(set, coded, surface(set)), surface(set)));
   }
   if (staged_upload_ && staged_upload_->roots == scene.roots) evict_staged();
+  record_held();
+}
+
+void GpuScene::record_held() {
   const std::lock_guard lock(mutex_);
   held_meshes_.clear();
   for (const auto& [key, mesh] : meshes_) held_meshes_.emplace(key, mesh.source);

@@ -118,6 +118,21 @@ void reduce_samples(FramePlan& plan) {
   plan.view.samples = 1;
 }
 
+// Chooses what the options leave open.
+void choose_shading(FramePlan& plan) {
+  if (plan.options.weights == RenderOptions::Weights::automatic) {
+    std::size_t weights = 0;
+    for (const auto& decoder : plan.decoders) weights += weight_count(*decoder);
+    plan.options.weights = plan.decoders.size() <= max_constant_decoders && weights <= max_constant_weights
+                               ? RenderOptions::Weights::constants
+                               : RenderOptions::Weights::buffer;
+  }
+  if (plan.options.shading == RenderOptions::Shading::automatic)
+    plan.options.shading = plan.view.samples == 1 && plan.options.weights == RenderOptions::Weights::constants
+                               ? RenderOptions::Shading::forward
+                               : RenderOptions::Shading::deferred;
+}
+
 void plan_passes(FramePlan& plan, const FrameFacts& facts, bool overlays) {
   const bool inspects = overlays && plan.guides.inspect != Guides::Inspect::none;
   for (const Effect* effect : effect_table()) {
@@ -201,17 +216,7 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
   }
   omit_view_direction(result);
   reduce_samples(result);
-  if (result.options.weights == RenderOptions::Weights::automatic) {
-    std::size_t weights = 0;
-    for (const auto& decoder : result.decoders) weights += weight_count(*decoder);
-    result.options.weights = result.decoders.size() <= max_constant_decoders && weights <= max_constant_weights
-                                 ? RenderOptions::Weights::constants
-                                 : RenderOptions::Weights::buffer;
-  }
-  if (result.options.shading == RenderOptions::Shading::automatic)
-    result.options.shading = result.view.samples == 1 && result.options.weights == RenderOptions::Weights::constants
-                                 ? RenderOptions::Shading::forward
-                                 : RenderOptions::Shading::deferred;
+  choose_shading(result);
   result.texture_bytes = textures.bytes();
   result.options.texels = chosen(options.texels, result.texture_bytes, device);
   result.overlays = guides != nullptr;

@@ -13,6 +13,10 @@ namespace rebake {
 namespace {
 
 constexpr double certain_spread = 0.05;
+// Largest scale and rotation in degrees by which surfaces refine pairs: more means that they do not belong together.
+constexpr double largest_change = 1.5, largest_turn = 45;
+// Residuals, relative to the extent of the points, above which pairs are doubtful.
+constexpr double doubtful_residual = 0.05;
 
 void add_ids(const NodePtr& node, std::set<NodeId>& ids) {
   ids.insert(node->id);
@@ -57,6 +61,9 @@ Similarity motion_by_pairs(const Register& edit, Report& report) {
     residuals += fmt::format("{}{:.4g}", residuals.empty() ? "" : ", ", residual);
   report.lines.push_back(
       fmt::format("pairs: {}; residuals {} (root mean square {:.4g})", words_of(fit.motion), residuals, fit.rms));
+  if (fit.rms > doubtful_residual * fit.extent)
+    report.lines.push_back(fmt::format("warning: the residuals are {:.0f} % of the points' extent: check the pairs",
+                                       100 * fit.rms / fit.extent));
   if (fit.spread < certain_spread)
     report.lines.push_back(
         fmt::format("warning: the points are nearly on a line ({:.2g} of its length across): the "
@@ -82,14 +89,19 @@ Outcome apply(const Scene& scene, const Register& edit, const Progress& progress
     for (Vec3& point : moved.points) point = motion * point;
     for (Vec3& normal : moved.normals) normal = (motion.linear() * normal).normalized();
     const IcpResult fit = trimmed_icp(moved, fixed, {edit.scale, edit.overlap}, progress);
+    if (!(fit.motion.scale >= 1 / largest_change && fit.motion.scale <= largest_change) ||
+        fit.motion.degrees() > largest_turn)
+      throw EditError(
+          fmt::format("the surfaces do not fit where the pairs bring them (refined, they would be {}): they may "
+                      "not overlap, or pairs are wrong; register by better pairs, or with refine false",
+                      words_of(fit.motion)));
     motion = fit.motion.affine() * motion;
     report.lines.push_back(fmt::format(
         "surfaces: {}; {:.0f} % overlap, distance {:.4g} (root mean square), {} iterations{}", words_of(fit.motion),
         fit.overlap * 100, fit.rms, fit.iterations, fit.converged ? "" : ", not converged"));
     if (fit.free_directions > 0)
-      report.lines.push_back(
-          fmt::format("warning: the overlapping surfaces slide in {} directions, which the pairs alone decide",
-                      fit.free_directions));
+      report.lines.push_back(fmt::format(
+          "warning: the overlapping surfaces slide in {} directions, which they do not decide", fit.free_directions));
   }
   if (!motion.matrix().allFinite()) throw EditError("the motion is not finite");
   const NodeId parent = parent_of(scene, edit.node.id);

@@ -109,6 +109,7 @@ PackedSets pack(const std::vector<TextureSet>& sets, int largest_side, AlphaCode
     const auto& [width, height, read] = page.texels;
     result.sets.push_back({std::move(page.soup), std::make_shared<const FeatureTexture>(
                                                      FeatureTexture::from_tile_rows(width, height, code, read))});
+    result.patches.push_back(std::move(page.patches));
     result.texel_area += static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
   }
   return result;
@@ -190,6 +191,7 @@ struct PageSoup {
   std::vector<Vec3> positions;
   std::vector<Vec2> uvs;
   std::vector<Face> faces;
+  TexelPatches patches;
   Attributes vertex_attributes, face_attributes;
 };
 
@@ -222,11 +224,19 @@ void add_triangles(const Packing& packing, const TextureSet& set, std::size_t s,
                          1 - ((1 - uv.y()) * old_height + (place.y - rect.top)) / page.height);
     kept[place.page].vertices.push_back(static_cast<std::uint32_t>(v));
   }
+  std::vector<std::size_t> number_in_page;
+  for (const Place& place : packing.place_of[s]) {
+    const TexelRect& rect = packing.rect_at(place);
+    std::vector<TexelRect>& rects = soups[place.page].patches.rects;
+    number_in_page.push_back(rects.size());
+    rects.push_back({place.x, place.y, place.x + rect.width() - 1, place.y + rect.height() - 1});
+  }
   for (std::size_t f = 0; f < soup.faces().size(); ++f) {
     Face face = soup.faces()[f];
     for (std::uint32_t& vertex : face) vertex = renumbered[vertex];
     const std::size_t page = packing.place_of[s][patches.of_face[f]].page;
     soups[page].faces.push_back(face);
+    soups[page].patches.of_face.push_back(number_in_page[patches.of_face[f]]);
     kept[page].faces.push_back(static_cast<std::uint32_t>(f));
   }
   for (std::size_t page = 0; page < soups.size(); ++page) {
@@ -253,7 +263,7 @@ std::vector<PackedPage> packed_pages(const std::vector<TextureSet>& sets, int la
                            std::make_shared<const std::vector<Vec2>>(std::move(soup.uvs)),
                            std::make_shared<const std::vector<Face>>(std::move(soup.faces)),
                            std::move(soup.vertex_attributes), std::move(soup.face_attributes)),
-                      moved_texels(packing.pages[k], code, std::move(packing.moves[k]))});
+                      moved_texels(packing.pages[k], code, std::move(packing.moves[k])), std::move(soup.patches)});
   }
   return result;
 }

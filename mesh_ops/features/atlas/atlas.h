@@ -13,13 +13,17 @@ namespace rebake {
 /// Texture sets repacked into as few textures of at most `largest_side`² as possible.
 struct PackedSets {
   std::vector<TextureSet> sets;
-  std::uint64_t texel_area = 0;  ///< width × height over all new textures
+  std::vector<TexelPatches> patches = {};  ///< per new set: the moved patches, in its texels
+  std::uint64_t texel_area = 0;            ///< width × height over all new textures
 };
 
 /// A repacked texture before its creation, with the triangles that use it.
 struct PackedPage {
   Soup soup;
   TexelRows texels;  ///< reads from the sets' textures, which it owns
+  /// The moved patches, in the page's texels. They must not be found again from UVs: a UV on the border of a patch lies
+  /// in a texel of its neighbour.
+  TexelPatches patches = {};
 };
 
 /// Identifies a patch of texels (texel_patches) in a list of texture sets.

@@ -119,9 +119,8 @@ std::uint32_t opaque_texels_in(const FeatureTexture& texels, const TexelRect& re
   return opaque;
 }
 
-void add_blocks(Composition& result, std::uint32_t number) {
+void add_blocks(Composition& result, std::uint32_t number, const TexelPatches& patches) {
   const TextureSet& page = result.pages[number];
-  const TexelPatches patches = texel_patches(page);
   constexpr int side = Composition::block_side;
   const auto columns = [](const TexelRect& rect) { return (rect.width() + side - 1) / side; };
   const std::size_t before = result.blocks.size();
@@ -290,11 +289,12 @@ Composition composed(const Scene& scene, int largest_side, const Progress& progr
   pieces.clear();
   for (std::size_t k = 0; k < result.teachers.size(); ++k) result.frames.push_back(frame_of(result, sets, k));
   progress.at("decomposing the scene", 0.2);
-  result.pages = pack(sets, largest_side, AlphaCode::plain).sets;
+  PackedSets packed = pack(sets, largest_side, AlphaCode::plain);
+  result.pages = std::move(packed.sets);
   sets.clear();
   for (std::uint32_t page = 0; page < result.pages.size(); ++page) {
     progress.at("decomposing the scene", 0.6 + 0.4 * page / static_cast<double>(result.pages.size()));
-    add_blocks(result, page);
+    add_blocks(result, page, packed.patches[page]);
   }
   std::erase_if(result.blocks, [](const Composition::Block& block) { return block.opaque == 0; });
   if (result.blocks.empty()) throw EditError("nothing to export: no visible triangle has an opaque texel");

@@ -132,6 +132,18 @@ Eigen::VectorXd reach(const Eigen::MatrixXd& weights, const Eigen::VectorXd& bia
   return weights.cwiseAbs().transpose() * largest + bias.cwiseAbs();
 }
 
+// Maps the two selecting features into the sector between two rays, `inside` away from its borders.
+void encode_into_sector(Branch& branch, const std::array<Eigen::Index, 2>& selectors, const Vec2& r1, const Vec2& r2,
+                        double inside) {
+  const auto [c, e] = selectors;
+  branch.encode(c, c) = (0.5 - inside) * r1.x();
+  branch.encode(c, e) = (0.5 - inside) * r2.x();
+  branch.encode(e, c) = (0.5 - inside) * r1.y();
+  branch.encode(e, e) = (0.5 - inside) * r2.y();
+  branch.offset[c] = inside * (r1.x() + r2.x());
+  branch.offset[e] = inside * (r1.y() + r2.y());
+}
+
 }  // namespace
 
 Student side_by_side(const Composition& composition, const TexelSample& sample, std::size_t bent_turns) {
@@ -153,15 +165,7 @@ Student side_by_side(const Composition& composition, const TexelSample& sample, 
   double most = 1;
   for (std::size_t k = 0; k < n; ++k) {
     Branch& branch = branches[k];
-    if (n > 1) {
-      const Vec2 r1 = border(k, n), r2 = border(k + 1, n);
-      branch.encode(c, c) = (0.5 - inside) * r1.x();
-      branch.encode(c, e) = (0.5 - inside) * r2.x();
-      branch.encode(e, c) = (0.5 - inside) * r1.y();
-      branch.encode(e, e) = (0.5 - inside) * r2.y();
-      branch.offset[c] = inside * (r1.x() + r2.x());
-      branch.offset[e] = inside * (r1.y() + r2.y());
-    }
+    if (n > 1) encode_into_sector(branch, {c, e}, border(k, n), border(k + 1, n), inside);
     Decoder decoder =
         fold_rotation(*composition.teachers[branch.teacher], branch.turn.transpose(), Axes::forward, Axes::forward);
     // The teacher's input is encode⁻¹ · (features − offset).

@@ -18,8 +18,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::array<const char*, 3> known_extensions{"KHR_materials_unlit", "KHR_texture_transform",
-                                                      "KHR_mesh_quantization"};
+constexpr std::array<const char*, 4> known_extensions{"KHR_materials_unlit", "KHR_texture_transform",
+                                                      "KHR_mesh_quantization", "EXT_texture_webp"};
 
 std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -91,7 +91,12 @@ void GltfDocument::fail(const std::string& what) const { throw FileError(file_, 
 GltfDocument::GltfDocument(const fs::path& file) : file_(file), bytes_(read_file(file)) {
   const std::string text = bytes_.starts_with("glTF") ? read_container(bytes_) : bytes_;
   try {
-    root_ = json::parse(text);
+    root_ = json::parse(text, [this](int depth, json::parse_event_t, json&) {
+      // No element is nested deeper, and deep nesting could exhaust the stack.
+      constexpr int deepest = 64;
+      if (depth > deepest) fail(fmt::format("is nested deeper than {} levels", deepest));
+      return true;
+    });
   } catch (const json::exception& error) {
     fail(fmt::format("is not valid JSON: {}", error.what()));
   }

@@ -126,7 +126,21 @@ class GltfReader {
     for (const std::uint32_t corner : corners)
       if (corner >= mesh.positions.size()) document_.fail(fmt::format("index {} is out of range", corner));
     mesh.faces = faces_of(corners, document_.number(primitive, "mode", 4), to_world.linear().determinant() < 0);
-    meshes_.push_back(std::move(mesh));
+    add_mesh(document_.number(primitive, "material", none), use.uv_set, std::move(mesh));
+  }
+
+  // Joins meshes of one material, which share its texture.
+  void add_mesh(std::size_t material, std::size_t uv_set, TexturedMesh mesh) {
+    const auto [it, fresh] = mesh_of_.try_emplace({material, uv_set}, meshes_.size());
+    if (fresh) {
+      meshes_.push_back(std::move(mesh));
+      return;
+    }
+    TexturedMesh& all = meshes_[it->second];
+    const auto first = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    all.uvs.insert(all.uvs.end(), mesh.uvs.begin(), mesh.uvs.end());
+    for (const Face& face : mesh.faces) all.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
   }
 
   // `mirrored`: the transform turns triangles inside out.
@@ -149,6 +163,9 @@ class GltfReader {
     if (number == none) return material;
     const json& made = document_.element("materials", number);
     material.name = made.value("name", json("")).is_string() ? made.value("name", std::string()) : "";
+    if (made.contains("emissiveTexture") || made.contains("emissiveFactor")) skipped_.insert("emission is skipped");
+    if (!made.contains("pbrMetallicRoughness") && made.contains("extensions"))
+      skipped_.insert(fmt::format("material \"{}\" has no metallic-roughness colours: it is white", material.name));
     const json surface = made.value("pbrMetallicRoughness", json::object());
     if (!surface.is_object()) document_.fail("\"pbrMetallicRoughness\" is not an object");
     material.factor = list_of<4>(document_, surface, "baseColorFactor", {1, 1, 1, 1});
@@ -165,13 +182,21 @@ class GltfReader {
     const json& texture = document_.element("textures", document_.number(reference, "index"));
     use.uv_set = document_.number(reference, "texCoord", 0);
     read_texture_transform(reference, use);
-    constexpr std::size_t clamp_to_edge = 33071;
-    if (texture.contains("sampler")) {
-      const json& sampler = document_.element("samplers", document_.number(texture, "sampler"));
-      material.repeats = document_.number(sampler, "wrapS", 10497) != clamp_to_edge;
-    }
-    material.image = image_at(document_.number(texture, "source"));
+    if (texture.contains("sampler"))
+      read_sampler(document_.element("samplers", document_.number(texture, "sampler")), material);
+    const json extensions = texture.value("extensions", json::object());
+    const bool webp = extensions.is_object() && extensions.contains("EXT_texture_webp");
+    material.image = image_at(document_.number(webp ? extensions.at("EXT_texture_webp") : texture, "source"));
     return material;
+  }
+
+  void read_sampler(const json& sampler, MeshMaterial& material) {
+    constexpr std::size_t repeat = 10497, clamp_to_edge = 33071;
+    for (const auto& [key, axis] : {std::pair("wrapS", 0U), {"wrapT", 1U}}) {
+      const std::size_t mode = document_.number(sampler, key, repeat);
+      material.repeats[axis] = mode != clamp_to_edge;
+      if (mode != repeat && mode != clamp_to_edge) skipped_.insert("mirrored repeats of textures are drawn as repeats");
+    }
   }
 
   void read_texture_transform(const json& reference, TextureUse& use) const {
@@ -208,10 +233,11 @@ class GltfReader {
   }
 
   // Bounds for nodes and meshes that are used many times.
-  static constexpr std::size_t max_nodes = 1'000'000, max_vertices = 200'000'000;
+  static constexpr std::size_t max_nodes = 1'000'000, max_vertices = 20'000'000;
   GltfDocument document_;
   std::size_t visited_ = 0, vertices_ = 0;
   std::vector<TexturedMesh> meshes_;
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of_;  // by material and UV set
   std::set<std::string> skipped_;
   std::map<std::size_t, std::shared_ptr<const ColorImage>> images_;
 };

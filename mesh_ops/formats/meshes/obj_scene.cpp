@@ -88,9 +88,12 @@ std::shared_ptr<const BakedObject> read_obj_object(const fs::path& file) {
   ObjFile read = read_with_materials(file);
   std::vector<TexturedMesh> meshes(read.mesh.materials.size());
   std::map<fs::path, std::shared_ptr<const ColorImage>> images;
+  bool takes_kd = false;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     MeshMaterial& material = meshes[m].material;
     material.name = read.mesh.materials[m];
+    if (!material.name.empty() && !read.materials.contains(material.name))
+      read.mesh.assumptions.push_back(fmt::format("material \"{}\" is not defined: it is white", material.name));
     const Material found = read.materials[material.name];
     if (found.image) {
       auto& image = images[*found.image];
@@ -99,6 +102,7 @@ std::shared_ptr<const BakedObject> read_obj_object(const fs::path& file) {
       material.image = image;
       material.cutoff = 0.5;
     } else {
+      takes_kd = takes_kd || found.color != std::array<double, 3>{1, 1, 1};
       for (std::size_t c = 0; c < 3; ++c) material.factor[c] = to_linear(std::clamp(found.color[c], 0.0, 1.0));
     }
   }
@@ -118,6 +122,7 @@ std::shared_ptr<const BakedObject> read_obj_object(const fs::path& file) {
     mesh.faces.push_back(face);
   }
   std::vector<std::string> assumptions = std::move(read.mesh.assumptions);
+  if (takes_kd) assumptions.emplace_back("Kd is a display colour (Blender writes linear ones, which are darker here)");
   assumptions.emplace_back("y is up; colours are drawn as they are, without light, and with nearest filtering");
   const auto object = object_of_meshes(std::move(meshes), file, assumptions);
   object->origin = origin_of_file(file, "obj", std::move(assumptions));
@@ -127,8 +132,9 @@ std::shared_ptr<const BakedObject> read_obj_object(const fs::path& file) {
 std::vector<fs::path> obj_files(const fs::path& file) {
   const ObjFile read = read_with_materials(file);
   std::vector<fs::path> files = read.libraries;
-  for (const auto& [name, material] : read.materials)
-    if (material.image) files.push_back(*material.image);
+  for (const std::string& name : read.mesh.materials)
+    if (const auto found = read.materials.find(name); found != read.materials.end() && found->second.image)
+      files.push_back(*found->second.image);
   return files;
 }
 

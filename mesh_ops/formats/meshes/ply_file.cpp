@@ -47,6 +47,7 @@ class Reader {
   PlyFile run() {
     read_header();
     for (const Element& element : elements_) {
+      if (element.properties.empty()) continue;  // takes no bytes, whatever its count
       if (element.name == "vertex")
         read_vertices(element);
       else if (element.name == "face")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,8 +21,11 @@ struct MeshMaterial {
   std::array<double, 4> factor{1, 1, 1, 1};  ///< linear red, green, blue and alpha, multiplied with the image
   /// Texels of less alpha are holes; nullopt: all are opaque.
   std::optional<double> cutoff;
-  bool repeats = true;  ///< whether the image repeats outside 0 … 1; otherwise its border does
+  std::array<bool, 2> repeats{true, true};  ///< along u and v: the image outside 0 … 1; otherwise its border
 };
+
+/// Largest texture that repeats of an image make, in texels.
+inline constexpr std::int64_t largest_repeated = std::int64_t{8192} * 8192;
 
 /// Triangles of one material.
 struct TexturedMesh {
@@ -31,8 +35,9 @@ struct TexturedMesh {
   MeshMaterial material;
 };
 
-/// An object with one texture set per mesh that has triangles. Appends decisions to `assumptions`. Throws FileError,
-/// naming `file`, if there are no triangles, or if an image repeats more often than a texture of 16384² can hold.
+/// An object with one texture set per mesh that has triangles; meshes without images share one. Appends decisions to
+/// `assumptions`. Throws FileError, naming `file`, if there are no triangles, if a position is not finite, or if the
+/// repeats of an image within triangles need more than largest_repeated texels.
 std::shared_ptr<BakedObject> object_of_meshes(std::vector<TexturedMesh> meshes, const std::filesystem::path& file,
                                               std::vector<std::string>& assumptions);
 

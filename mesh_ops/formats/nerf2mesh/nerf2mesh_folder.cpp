@@ -108,6 +108,7 @@ std::shared_ptr<const BakedObject> read_nerf2mesh_folder(const fs::path& folder,
   origin->dialect = object->dialect;
   origin->mlp = source_of("mlp.json", text);
   origin->decoder = object->decoder;
+  origin->obj_num = mlp.cascade;
   for (int k = 0; k < mlp.cascade; ++k) {
     progress.at("reading " + folder.filename().string(), static_cast<double>(k) / mlp.cascade);
     const std::string mesh_text = read_file(folder / mesh_name(k));

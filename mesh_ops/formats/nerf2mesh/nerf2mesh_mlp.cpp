@@ -16,7 +16,6 @@ using nlohmann::json;
 
 constexpr const char *first_key = "net.0.weight", *second_key = "net.1.weight";
 constexpr std::size_t widest_layer = 512;
-constexpr int max_meshes = 64;
 // Rows of Decoder::weights0 that the file stores: the direction, then the specular features.
 constexpr Eigen::Index direction_row = 8, specular_row = 4;
 
@@ -84,8 +83,8 @@ Nerf2MeshMlp read_nerf2mesh_mlp(std::string_view text, const std::filesystem::pa
   d.bias2 = Eigen::VectorXd::Zero(3);
   if (const auto found = root.find("cascade"); found != root.end()) {
     const double count = found->is_number() ? found->get<double>() : 0;
-    if (count != std::floor(count) || count < 1 || count > max_meshes)
-      throw FileError(name, fmt::format("\"cascade\" must be a whole number from 1 to {}", max_meshes));
+    if (count != std::floor(count) || count < 1 || count > max_nerf2mesh_meshes)
+      throw FileError(name, fmt::format("\"cascade\" must be a whole number from 1 to {}", max_nerf2mesh_meshes));
     mlp.cascade = static_cast<int>(count);
   }
   mlp.others = json_members(text);

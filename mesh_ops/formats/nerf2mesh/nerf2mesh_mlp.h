@@ -9,6 +9,9 @@
 
 namespace rebake {
 
+/// Largest number of meshes of a folder.
+inline constexpr int max_nerf2mesh_meshes = 64;
+
 /// Contents of the mlp.json of a nerf2mesh folder.
 struct Nerf2MeshMlp {
   Decoder decoder;  ///< ColorRule::diffuse_and_network

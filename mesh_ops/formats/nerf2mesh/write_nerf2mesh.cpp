@@ -56,7 +56,9 @@ std::string material_lines(int k, const std::string& material) {
 
 void write_mesh(AtomicFolder& out, int k, const Soup& soup, const Origin* origin, const Origin::Set* source) {
   std::string mesh, material;
-  if (source != nullptr && source->geometry.size() > 1) material = unchanged_bytes(*origin, source->geometry[1]);
+  // A material names the images of its own number.
+  if (source != nullptr && source->geometry.size() > 1 && source->geometry[1].name == fmt::format("mesh_{}.mtl", k))
+    material = unchanged_bytes(*origin, source->geometry[1]);
   if (!material.empty()) out.write(fmt::format("mesh_{}.mtl", k), material);
   if (source != nullptr && source->positions.lock() == soup.shared_positions() &&
       source->uvs.lock() == soup.shared_uvs() && source->faces.lock() == soup.shared_faces())
@@ -82,6 +84,9 @@ bool write_images(AtomicFolder& out, int k, const FeatureTexture& texels, const 
 }
 
 void check_is_exact(const BakedObject& object) {
+  if (object.sets.size() > static_cast<std::size_t>(max_nerf2mesh_meshes))
+    throw EditError(fmt::format("a nerf2mesh folder holds at most {} meshes, but the scene has {}",
+                                max_nerf2mesh_meshes, object.sets.size()));
   if (!is_nerf2mesh_decoder(*object.decoder))
     throw EditError("the objects are not all of nerf2mesh folders, so a nerf2mesh folder cannot represent them");
   for (const TextureSet& set : object.sets) {
@@ -112,7 +117,7 @@ void write_nerf2mesh_folder(AtomicFolder& out, const BakedObject& object, std::v
   if (encodes)
     notes.emplace_back("textures were encoded as PNG, which is exact; the viewer of nerf2mesh reads .jpg names only");
   std::string mlp;
-  if (origin != nullptr && object.decoder == origin->decoder && origin->sets.size() == object.sets.size())
+  if (origin != nullptr && object.decoder == origin->decoder && origin->obj_num == static_cast<int>(object.sets.size()))
     mlp = unchanged_bytes(*origin, origin->mlp);
   if (mlp.empty())
     mlp = write_nerf2mesh_mlp({*object.decoder, static_cast<int>(object.sets.size()), object.other_members});

@@ -100,6 +100,32 @@ TEST_F(Guards, ProjectsAreNotReplacedByOtherOutputsNorBySmallerProjects) {
   EXPECT_NE(log().find("newer version"), std::string::npos) << log();
 }
 
+TEST_F(Guards, FilesBesideMeshesAreProtected) {
+  fs::create_directories(path("obj"));
+  write("obj/m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");
+  write("obj/m.mtl", "newmtl a\nKd 1 0 0\n");
+  const std::string before = read_file(path("obj/m.mtl"));
+  write("s.jsonl", import_line() + R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}})" +
+                       "\n" +
+                       fmt::format("{{\"op\": \"export_views\", \"out\": \"{0}/m.mtl\"}}\n"
+                                   "{{\"op\": \"import\", \"path\": \"{0}/m.obj\"}}\n",
+                                   path("obj").string()));
+  EXPECT_EQ(program("run {}/s.jsonl"), 1);
+  EXPECT_NE(log().find("is a file that this script reads"), std::string::npos) << log();
+  EXPECT_EQ(read_file(path("obj/m.mtl")), before);
+}
+
+TEST_F(Guards, ProjectsOfLinkedFilesOpen) {
+  fs::create_directories(path("blobs"));
+  write("blobs/abc123", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+  fs::create_symlink(path("blobs/abc123"), path("m.obj"));
+  write("s.jsonl",
+        fmt::format("{{\"op\": \"import\", \"path\": \"{}\"}}\n{{\"op\": \"save_project\", \"out\": \"{}\"}}\n",
+                    path("m.obj").string(), path("p.rebake").string()));
+  EXPECT_EQ(program("run {}/s.jsonl"), 0) << log();
+  EXPECT_EQ(program("info {}/p.rebake"), 0) << log();
+}
+
 TEST_F(Guards, PhotographsOfEveryUsualLayoutAreProtected) {
   for (const auto& [model, pictures] : {std::pair("ns/colmap/sparse/0", "ns/images"),
                                         {"c3/sparse/1", "c3/images"},
@@ -119,6 +145,13 @@ TEST_F(Guards, PhotographsOfEveryUsualLayoutAreProtected) {
     EXPECT_NE(log().find("is a file of the capture"), std::string::npos) << log();
     EXPECT_EQ(read_file(path(std::string(pictures) + "/0001.png")), "photograph");
   }
+  // Other pictures of the same names in the capture's folder, such as those for testing.
+  fs::create_directories(path("ns/colmap/masks"));
+  write("ns/colmap/masks/0001.png", "mask");
+  EXPECT_EQ(
+      program("render " REBAKE_SOURCE "/samples/scenes/kettle --cameras {}/ns/colmap/sparse/0 -o {}/ns/colmap/masks"),
+      1);
+  EXPECT_EQ(read_file(path("ns/colmap/masks/0001.png")), "mask");
 }
 
 TEST_F(Guards, KeepsDamagedProjectsAndLeftoversThatAreRead) {

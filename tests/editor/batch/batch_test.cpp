@@ -107,6 +107,17 @@ TEST_F(Batch, ResumeSkipsValidResults) {
   EXPECT_EQ(run()["b"], Status::done) << "other variables may give another result";
 }
 
+TEST_F(Batch, KeepsScenesThatNoBatchWrote) {
+  std::filesystem::create_directories(options.out);
+  std::filesystem::copy(folder_.path() / "scenes/b", options.out / "a");
+  const auto before = folder_bytes(options.out);
+  EXPECT_THROW(run(), FieldError);
+  EXPECT_EQ(folder_bytes(options.out), before);
+  std::filesystem::remove_all(options.out / "a");
+  std::filesystem::create_directory_symlink(folder_.path() / "elsewhere", options.out / "a");
+  EXPECT_THROW(run(), FieldError);
+}
+
 TEST_F(Batch, ShardsShareTheScenes) {
   options.shards = 2;
   std::map<std::string, Status> both = run();

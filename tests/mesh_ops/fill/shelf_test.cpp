@@ -85,7 +85,7 @@ Color color_at(const Vec3& p) {
           0.4 + 0.15 * std::sin(2 * p.z() + p.x())};
 }
 
-// A wall and a shelf before it. With the box, what it hides is missing.
+// A wall and a shelf before it. With the box, the hidden parts are missing.
 Scene shelf(bool with_box) {
   const auto nothing = [](const Vec3&) { return false; };
   const auto in_box = [&](const Vec3& p) { return with_box && std::abs(p.x()) < 0.3 && p.z() > -0.4 && p.z() < 0; };

@@ -69,6 +69,20 @@ TEST(FitPairs, RefusesWhatDecidesNoMotion) {
   EXPECT_NE(problem_of(solid, swapped).find("mirrored"), std::string::npos);
 }
 
+TEST(FitPairs, NamesSwappedPairs) {
+  std::vector<Vec3> from{{0, 0, 0}, {1, 0, 0.1}, {0.2, 1, 0}, {0.3, 0.1, 1}, {0.9, 0.8, 0.4}}, onto;
+  for (const Vec3& p : from) onto.push_back(some_motion(2, {5, 0, 0})(p));
+  EXPECT_EQ(problem_of(from, onto), "none");
+  std::swap(onto[1], onto[3]);
+  EXPECT_NE(problem_of(from, onto).find("pairs 2 and 4 are swapped"), std::string::npos) << problem_of(from, onto);
+}
+
+TEST(Register, RefusesSurfacesThatDoNotOverlap) {
+  const OverlappingCaptures captures = overlapping_captures(0.5, 0, some_motion(1, {40, 0, 0}));
+  const nlohmann::json edit{{"op", "register"}, {"node", "moved"}, {"to", "fixed"}};
+  EXPECT_THROW(apply(captures.scene, read_edit(edit, captures.scene)), Error);
+}
+
 TEST(Register, FindsThePlaceByAStripOfOverlap) {
   for (const double away : {0.0, 1e6}) {
     const OverlappingCaptures captures = overlapping_captures(0.2, 0.05, some_motion(1.7, {away + 3, -2, away}));

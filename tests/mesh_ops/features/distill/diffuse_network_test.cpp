@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "mesh_ops/features/distill/composition.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/texture/texel_rows.h"
 #include "render/compare.h"
@@ -50,6 +51,21 @@ TEST(DiffuseNetwork, ColoursOfWholePixelsAreKept) {
   std::array<double, 8> half = decode_features(b.at(15, 15), AlphaCode::plain);
   for (double& feature : half) feature /= 2;
   EXPECT_NEAR(decode(*after->decoder, half, Vec3::Zero())[0], 0.94, 0.005);
+}
+
+// UVs on the border of the texture lie, once it is packed, in texels of the neighbouring patch.
+TEST(DiffuseNetwork, PatchesThatTouchStaySeparateParts) {
+  Scene scene = scene_of(made_object(), "ball");
+  Node prop;
+  prop.name = "prop";
+  prop.object = std::make_shared<const BakedObject>(all_colors());
+  scene = with_added(scene, prop, NodeId::none, 1);
+  const Composition composition = composed(scene, 4096);
+  std::vector<std::uint64_t> texels(composition.parts.size());
+  for (const Composition::Block& block : composition.blocks) texels[block.part] += block.opaque;
+  ASSERT_EQ(texels.size(), 2U);
+  EXPECT_EQ(texels[1], 256U);
+  EXPECT_EQ(texels[0], scene.roots[0]->object->opaque_texel_count());
 }
 
 TEST(DiffuseNetwork, ExportsAsMobileNerf) {

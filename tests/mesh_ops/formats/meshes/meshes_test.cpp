@@ -315,6 +315,60 @@ TEST_F(Meshes, FilesBesideAreHashedAndStayInTheFolder) {
   }
 }
 
+TEST_F(Meshes, SharedImagesAreOneTexture) {
+  nlohmann::json root = square_gltf();
+  for (int k = 1; k < 20; ++k) {
+    root["nodes"].push_back({{"mesh", 0}, {"translation", {3.0 * k, 0, 0}}});
+    root["scenes"][0]["nodes"].push_back(k);
+  }
+  // And plain colours, which share another.
+  for (int k = 1; k < 20; ++k) {
+    root["materials"].push_back({{"pbrMetallicRoughness", {{"baseColorFactor", {k / 20.0, 1, 0, 1}}}}});
+    root["meshes"].push_back(root["meshes"][0]);
+    root["meshes"][k]["primitives"][0]["material"] = k;
+    root["nodes"].push_back({{"mesh", k}, {"translation", {3.0 * k, 5, 0}}});
+    root["scenes"][0]["nodes"].push_back(19 + k);
+  }
+  write_text(path("square.gltf"), root.dump());
+  const Scene scene = read("square.gltf");
+  EXPECT_EQ(scene.roots[0]->object->sets.size(), 2U);
+  EXPECT_EQ(shown_at(scene, 3 * 7 - 0.5, 0.5), red_bytes);
+  EXPECT_EQ(shown_at(scene, 3 * 10 - 0.5, 5.5),
+            (std::array<int, 3>{static_cast<int>(std::lround(255 * to_display(0.5))), 255, 0}));
+}
+
+TEST_F(Meshes, SamplersClampPerAxis) {
+  nlohmann::json root = square_gltf();
+  root["samplers"] = {{{"wrapS", 10497}, {"wrapT", 33071}}};
+  root["textures"][0]["sampler"] = 0;
+  root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"offset", {1, -1}}};
+  write_text(path("square.gltf"), root.dump());
+  const Scene scene = read("square.gltf");
+  // One tile to the right is the same; one tile up is the upper border.
+  for (const double y : {-0.5, 0.5}) {
+    EXPECT_EQ(shown_at(scene, -0.5, y), red_bytes);
+    EXPECT_EQ(shown_at(scene, 0.5, y), green_bytes);
+  }
+}
+
+TEST_F(Meshes, HostileFilesEnd) {
+  std::string deep = R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": )";
+  deep += std::string(200000, '[') + std::string(200000, ']') + "}]}";
+  EXPECT_NE(problem("a.gltf", deep).find("nested deeper"), std::string::npos);
+  EXPECT_NE(problem("a.ply",
+                    "ply\nformat ascii 1.0\nelement junk 18446744073709551615\nelement vertex 0\n"
+                    "property float x\nproperty float y\nproperty float z\nend_header\n")
+                .find("no faces"),
+            std::string::npos);
+  nlohmann::json root = square_gltf({{"scale", {1e308, 1e308, 1e308}}, {"translation", {1e308, 0, 0}}});
+  EXPECT_NE(problem("a.gltf", root.dump()).find("not finite"), std::string::npos);
+  // A material that no face uses needs no image.
+  write_text(path("square.mtl"), "newmtl picture\nmap_Kd image.png\nnewmtl unused\nmap_Kd gone.png\n");
+  EXPECT_EQ(problem("square.obj", square_obj), "none");
+  EXPECT_EQ(scene_files(path("square.obj")).size(), 2U);
+}
+
 TEST_F(Meshes, DamageIsNamed) {
   EXPECT_NE(problem("a.obj", "v 0 0 0\n").find("no triangles"), std::string::npos);
   EXPECT_NE(problem("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n").find("end_header"),

@@ -10,7 +10,7 @@
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_mlp.h"
 #include "mesh_ops/texture/decoder_bounds.h"
 #include "mesh_ops/training/texel_colors.h"
-#include "tests/support/document_fixture.h"
+#include "tests/support/made_scenes.h"
 #include "tests/support/nerf2mesh_example.h"
 
 namespace rebake::test {
@@ -140,6 +140,15 @@ TEST(Nerf2Mesh, ScenesThatTheFormatCannotHoldAreRefused) {
   EXPECT_THROW(format_named("mobilenerf").write(foreign, folder.path() / "out", {}, {}), EditError);
   EXPECT_THROW(format_named("nerf2mesh").write(foreign, folder.path() / "out", {Layout::split, {}}, {}), FieldError);
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
+}
+
+TEST(Nerf2Mesh, EmptyMeshesDoNotCount) {
+  const TemporaryFolder folder;
+  write_nerf2mesh_example(folder.path() / "n", {2, 32, false, 32, 1});
+  write_text(folder.path() / "n/mesh_1.obj", "v 0 0 0\nvt 0 0\n");
+  const Scene scene = read_any(folder.path() / "n", Axes::y_up);
+  format_named("nerf2mesh").write(scene, folder.path() / "out", {}, {});
+  EXPECT_EQ(read_any(folder.path() / "out", Axes::y_up).roots[0]->object->sets.size(), 1U);
 }
 
 TEST(Nerf2Mesh, DamageIsNamed) {
