@@ -33,9 +33,8 @@ Outcome apply(const Scene& scene, const SetLength& edit) {
     camera.ortho_height *= factor;
   }
   result.ground.height *= factor;
-  return {
-      std::move(result),
-      {{fmt::format("set_length: {:.6g} became {:.6g}; the scene is scaled by {:.6g}", before, edit.length, factor)}}};
+  return {std::move(result),
+          {{fmt::format("{:.6g} became {:.6g}; the scene is scaled by {:.6g}", before, edit.length, factor)}}};
 }
 
 std::string whole_title(const SetLength& /*edit*/) { return "Set a length"; }

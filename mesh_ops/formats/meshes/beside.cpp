@@ -25,6 +25,14 @@ fs::path path_beside(const fs::path& folder, std::string name, const fs::path& n
   return inside;
 }
 
+std::string read_beside(const fs::path& folder, const fs::path& name, const fs::path& named_in) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / name, error))
+    throw FileError(named_in, fmt::format("refers to \"{}\", which is not there: copy it beside, or change the name",
+                                          name.string()));
+  return read_file(folder / name);
+}
+
 std::shared_ptr<const Origin> origin_of_file(const fs::path& file, const char* format,
                                              std::vector<std::string> assumptions) {
   auto origin = std::make_shared<Origin>();

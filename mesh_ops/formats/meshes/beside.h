@@ -14,6 +14,10 @@ namespace rebake {
 std::filesystem::path path_beside(const std::filesystem::path& folder, std::string name,
                                   const std::filesystem::path& named_in);
 
+/// The bytes of a file that `named_in` refers to; `name` is relative to `folder`. Throws FileError, naming both.
+std::string read_beside(const std::filesystem::path& folder, const std::filesystem::path& name,
+                        const std::filesystem::path& named_in);
+
 /// The origin of an object that was read from a single file.
 std::shared_ptr<const Origin> origin_of_file(const std::filesystem::path& file, const char* format,
                                              std::vector<std::string> assumptions);

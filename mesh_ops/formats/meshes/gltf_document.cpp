@@ -64,7 +64,10 @@ std::string from_base64(std::string_view text, const GltfDocument& document) {
     const std::size_t digit = digits.find(c);
     if (digit == std::string_view::npos) document.fail("a data URI is not valid base64");
     bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    if ((count += 6) >= 8) bytes += static_cast<char>(bits >> (count -= 8) & 0xff);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes += static_cast<char>(bits >> count & 0xff);
   }
   return bytes;
 }
@@ -224,7 +227,7 @@ std::string GltfDocument::fetched(const std::string& uri) const {
     if (comma == std::string::npos) fail("a data URI is not base64");
     return from_base64(std::string_view(uri).substr(comma + 8), *this);
   }
-  return read_file(file_.parent_path() / path_beside(file_.parent_path(), unescaped(uri), file_));
+  return read_beside(file_.parent_path(), path_beside(file_.parent_path(), unescaped(uri), file_), file_);
 }
 
 std::vector<fs::path> GltfDocument::files() const {

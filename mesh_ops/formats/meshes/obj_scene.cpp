@@ -98,7 +98,9 @@ std::shared_ptr<const BakedObject> read_obj_object(const fs::path& file) {
     if (found.image) {
       auto& image = images[*found.image];
       const fs::path path = file.parent_path() / *found.image;
-      if (!image) image = std::make_shared<const ColorImage>(decode_color_image(read_file(path), path));
+      if (!image)
+        image = std::make_shared<const ColorImage>(
+            decode_color_image(read_beside(file.parent_path(), *found.image, file), path));
       material.image = image;
       material.cutoff = 0.5;
     } else {

@@ -45,9 +45,10 @@ Vec2 uv_of(const PlyFile& ply, std::size_t polygon, std::size_t corner) {
 std::vector<TexturedMesh> textured(const PlyFile& ply, const fs::path& file) {
   std::vector<TexturedMesh> meshes(ply.images.size());
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const fs::path image = file.parent_path() / path_beside(file.parent_path(), ply.images[k], file);
+    const fs::path name = path_beside(file.parent_path(), ply.images[k], file), image = file.parent_path() / name;
     meshes[k].material.name = ply.images[k];
-    meshes[k].material.image = std::make_shared<const ColorImage>(decode_color_image(read_file(image), image));
+    meshes[k].material.image =
+        std::make_shared<const ColorImage>(decode_color_image(read_beside(file.parent_path(), name, file), image));
     meshes[k].material.cutoff = 0.5;
   }
   std::map<std::tuple<std::size_t, std::uint32_t, double, double>, std::uint32_t> known;

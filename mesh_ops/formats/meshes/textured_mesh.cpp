@@ -133,9 +133,10 @@ void share_palette(std::vector<TexturedMesh>& meshes) {
   palette.width = std::min(colors, widest);
   palette.height = (colors + palette.width - 1) / palette.width;
   palette.rgba.resize(4 * static_cast<std::size_t>(palette.width) * static_cast<std::size_t>(palette.height), 255);
-  for (const std::uint32_t color : color_of)
-    all.uvs.emplace_back((color % static_cast<unsigned>(palette.width) + 0.5) / palette.width,
-                         1 - (color / static_cast<unsigned>(palette.width) + 0.5) / palette.height);
+  for (const std::uint32_t color : color_of) {
+    const std::uint32_t columns = static_cast<unsigned>(palette.width), column = color % columns, row = color / columns;
+    all.uvs.emplace_back((column + 0.5) / palette.width, 1 - (row + 0.5) / palette.height);
+  }
   all.material.image = std::make_shared<const ColorImage>(std::move(palette));
   all.material.cutoff = 0.5;
   meshes.push_back(std::move(all));

@@ -11,7 +11,6 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/mobilenerf/dialect.h"
 #include "mesh_ops/formats/mobilenerf/feature_png.h"
 #include "mesh_ops/formats/mobilenerf/folder_names.h"
@@ -19,16 +18,13 @@
 #include "mesh_ops/formats/mobilenerf/obj.h"
 #include "mesh_ops/formats/mobilenerf/rotations_file.h"
 #include "mesh_ops/formats/mobilenerf/rotations_json.h"
+#include "mesh_ops/formats/mobilenerf/source_file.h"
 
 namespace rebake {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-SourceFile source_of(const std::string& name, std::string_view bytes) {
-  return {name, bytes.size(), content_hash(bytes)};
-}
 
 struct SetComponents {
   std::vector<ObjMesh> chunks;
@@ -133,14 +129,14 @@ void run_job(const fs::path& folder, const BakedLayout& layout, const Dialect& d
     const std::string& name = files.geometry[job.chunk];
     const std::string bytes = read_file(folder / name);
     parts.chunks[job.chunk] = read_obj(bytes, folder / name);
-    parts.geometry[job.chunk] = source_of(name, bytes);
+    parts.geometry[job.chunk] = source_file(name, bytes);
     return;
   }
   const AlphaCode code = alpha_code_of(layout.unsplit ? Layout::unsplit : Layout::split, dialect);
   const auto& [name0, name1] = files.textures;
   FileBytes feat0(folder / name0), feat1(folder / name1);
-  parts.feat0 = source_of(name0, feat0.view());
-  parts.feat1 = source_of(name1, feat1.view());
+  parts.feat0 = source_file(name0, feat0.view());
+  parts.feat1 = source_file(name1, feat1.view());
   // Releases the memory of a file's bytes as they are decoded.
   FeatureImages images =
       read_feature_images(feat0.view(), folder / name0, feat1.view(), folder / name1, code, dialect,
@@ -212,7 +208,7 @@ std::shared_ptr<const BakedObject> read_baked_folder(const fs::path& folder, con
   object->layout = unsplit ? Layout::unsplit : chunked ? Layout::chunked : Layout::split;
   origin->folder = absolute_path(folder);
   origin->layout = object->layout;
-  origin->mlp = source_of("mlp.json", mlp_text);
+  origin->mlp = source_file("mlp.json", mlp_text);
   origin->decoder = object->decoder;
   if (mlp.needs_repair) origin->mlp.name.clear();
   assumptions.insert(assumptions.end(), mlp.assumptions.begin(), mlp.assumptions.end());

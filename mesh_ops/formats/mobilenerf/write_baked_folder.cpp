@@ -19,6 +19,7 @@
 #include "mesh_ops/formats/mobilenerf/mlp_json.h"
 #include "mesh_ops/formats/mobilenerf/obj.h"
 #include "mesh_ops/formats/mobilenerf/rotations_file.h"
+#include "mesh_ops/formats/mobilenerf/source_file.h"
 
 namespace rebake {
 
@@ -58,17 +59,6 @@ bool copy_unchanged(AtomicFolder& out, const fs::path& to, const Origin& origin,
     // The file was moved or removed, so its contents are written from memory. That also reports a full disk.
     return false;
   }
-}
-
-// The bytes of a source file, if they have not changed since it was read.
-std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFile& file) {
-  try {
-    std::string bytes = read_file(origin.folder / file.name);
-    if (bytes.size() == file.size && content_hash(bytes) == file.hash) return bytes;
-  } catch (const FileError&) {
-    // The file was moved or removed, so its contents are written from memory.
-  }
-  return std::nullopt;
 }
 
 // Text of a count: exact below a million.

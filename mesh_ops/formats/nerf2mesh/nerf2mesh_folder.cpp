@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/images/color_image.h"
 #include "mesh_ops/formats/mobilenerf/obj.h"
+#include "mesh_ops/formats/mobilenerf/source_file.h"
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_mlp.h"
 
 namespace rebake {
@@ -35,10 +35,6 @@ std::string image_name(const fs::path& folder, int image, int k) {
   }
   if (!found) throw FileError(folder / fmt::format("feat{}_{}.jpg", image, k), "does not exist, nor does a .png");
   return *found;
-}
-
-SourceFile source_of(const std::string& name, std::string_view bytes) {
-  return {name, bytes.size(), content_hash(bytes)};
 }
 
 std::shared_ptr<const FeatureTexture> joined(const ColorImage& diffuse, const ColorImage& specular) {
@@ -106,13 +102,14 @@ std::shared_ptr<const BakedObject> read_nerf2mesh_folder(const fs::path& folder,
   origin->folder = absolute_path(folder);
   origin->format = nerf2mesh_format;
   origin->dialect = object->dialect;
-  origin->mlp = source_of("mlp.json", text);
+  origin->mlp = source_file("mlp.json", text);
   origin->decoder = object->decoder;
   origin->obj_num = mlp.cascade;
   for (int k = 0; k < mlp.cascade; ++k) {
     progress.at("reading " + folder.filename().string(), static_cast<double>(k) / mlp.cascade);
     const std::string mesh_text = read_file(folder / mesh_name(k));
-    ObjMesh mesh = read_obj(mesh_text, folder / mesh_name(k));
+    // With names of materials, so that they are not reported as skipped.
+    ObjMesh mesh = read_obj(mesh_text, folder / mesh_name(k), {true, false});
     for (const std::string& assumption : mesh.assumptions)
       origin->assumptions.push_back(fmt::format("{}: {}", mesh_name(k), assumption));
     const std::string names[] = {image_name(folder, 0, k), image_name(folder, 1, k)};
@@ -128,16 +125,16 @@ std::shared_ptr<const BakedObject> read_nerf2mesh_folder(const fs::path& folder,
     }
     TextureSet set{Soup(std::move(mesh.positions), std::move(mesh.uvs), std::move(mesh.faces)),
                    joined(diffuse, specular)};
-    origin->sets.push_back({{source_of(mesh_name(k), mesh_text)},
-                            source_of(names[0], bytes[0]),
-                            source_of(names[1], bytes[1]),
+    origin->sets.push_back({{source_file(mesh_name(k), mesh_text)},
+                            source_file(names[0], bytes[0]),
+                            source_file(names[1], bytes[1]),
                             set.soup.shared_positions(),
                             set.soup.shared_uvs(),
                             set.soup.shared_faces(),
                             set.texels});
     // Only other programs need the material.
     if (fs::exists(folder / material_name(k)))
-      origin->sets.back().geometry.push_back(source_of(material_name(k), read_file(folder / material_name(k))));
+      origin->sets.back().geometry.push_back(source_file(material_name(k), read_file(folder / material_name(k))));
     object->sets.push_back(std::move(set));
   }
   if (object->sets.empty()) throw FileError(folder / mesh_name(0), "has no triangles, like all meshes");

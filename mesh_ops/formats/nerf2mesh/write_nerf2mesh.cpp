@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/images/png_writer.h"
 #include "mesh_ops/formats/mobilenerf/obj.h"
+#include "mesh_ops/formats/mobilenerf/source_file.h"
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_folder.h"
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_mlp.h"
 
@@ -14,17 +14,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int png_compression = 6;
-
-// The bytes of a source file, if they have not changed since it was read; otherwise empty.
-std::string unchanged_bytes(const Origin& origin, const SourceFile& file) {
-  try {
-    std::string bytes = read_file(origin.folder / file.name);
-    if (bytes.size() == file.size && content_hash(bytes) == file.hash) return bytes;
-  } catch (const FileError&) {
-    // The file was moved or removed, so its contents are written from memory.
-  }
-  return {};
-}
 
 // Image 0 (diffuse) or 1 (specular) of a texture as RGB.
 std::string encoded(const FeatureTexture& texture, int image) {
@@ -58,11 +47,11 @@ void write_mesh(AtomicFolder& out, int k, const Soup& soup, const Origin* origin
   std::string mesh, material;
   // A material names the images of its own number.
   if (source != nullptr && source->geometry.size() > 1 && source->geometry[1].name == fmt::format("mesh_{}.mtl", k))
-    material = unchanged_bytes(*origin, source->geometry[1]);
+    material = unchanged_bytes(*origin, source->geometry[1]).value_or("");
   if (!material.empty()) out.write(fmt::format("mesh_{}.mtl", k), material);
   if (source != nullptr && source->positions.lock() == soup.shared_positions() &&
       source->uvs.lock() == soup.shared_uvs() && source->faces.lock() == soup.shared_faces())
-    mesh = unchanged_bytes(*origin, source->geometry.front());
+    mesh = unchanged_bytes(*origin, source->geometry.front()).value_or("");
   if (mesh.empty())
     mesh =
         material_lines(k, material) + write_obj(soup.positions(), soup.uvs(), soup.faces(), 0, soup.triangle_count());
@@ -75,7 +64,7 @@ bool write_images(AtomicFolder& out, int k, const FeatureTexture& texels, const 
   bool encodes = false;
   for (const int image : {0, 1}) {
     const SourceFile* file = source == nullptr ? nullptr : image == 0 ? &source->feat0 : &source->feat1;
-    const std::string bytes = file == nullptr ? "" : unchanged_bytes(*origin, *file);
+    const std::string bytes = file == nullptr ? "" : unchanged_bytes(*origin, *file).value_or("");
     encodes = encodes || bytes.empty();
     const std::string extension = bytes.empty() ? ".png" : fs::path(file->name).extension().string();
     out.write(fmt::format("feat{}_{}{}", image, k, extension), bytes.empty() ? encoded(texels, image) : bytes);
@@ -118,7 +107,7 @@ void write_nerf2mesh_folder(AtomicFolder& out, const BakedObject& object, std::v
     notes.emplace_back("textures were encoded as PNG, which is exact; the viewer of nerf2mesh reads .jpg names only");
   std::string mlp;
   if (origin != nullptr && object.decoder == origin->decoder && origin->obj_num == static_cast<int>(object.sets.size()))
-    mlp = unchanged_bytes(*origin, origin->mlp);
+    mlp = unchanged_bytes(*origin, origin->mlp).value_or("");
   if (mlp.empty())
     mlp = write_nerf2mesh_mlp({*object.decoder, static_cast<int>(object.sets.size()), object.other_members});
   out.write("mlp.json", mlp);

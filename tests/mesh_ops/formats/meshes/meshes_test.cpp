@@ -363,6 +363,8 @@ TEST_F(Meshes, HostileFilesEnd) {
             std::string::npos);
   nlohmann::json root = square_gltf({{"scale", {1e308, 1e308, 1e308}}, {"translation", {1e308, 0, 0}}});
   EXPECT_NE(problem("a.gltf", root.dump()).find("not finite"), std::string::npos);
+  write_text(path("square.mtl"), "newmtl picture\nmap_Kd gone.png\n");
+  EXPECT_NE(problem("square.obj", square_obj).find("refers to \"gone.png\", which is not there"), std::string::npos);
   // A material that no face uses needs no image.
   write_text(path("square.mtl"), "newmtl picture\nmap_Kd image.png\nnewmtl unused\nmap_Kd gone.png\n");
   EXPECT_EQ(problem("square.obj", square_obj), "none");

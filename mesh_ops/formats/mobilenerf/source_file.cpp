@@ -1,0 +1,23 @@
+#include "mesh_ops/formats/mobilenerf/source_file.h"
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
+
+namespace rebake {
+
+SourceFile source_file(const std::string& name, std::string_view bytes) {
+  return {name, bytes.size(), content_hash(bytes)};
+}
+
+std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFile& file) {
+  try {
+    std::string bytes = read_file(origin.folder / file.name);
+    if (bytes.size() == file.size && content_hash(bytes) == file.hash) return bytes;
+  } catch (const FileError&) {
+    // The file was moved or removed, so its contents are written from memory.
+  }
+  return std::nullopt;
+}
+
+}  // namespace rebake
