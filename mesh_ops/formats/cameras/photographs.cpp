@@ -29,7 +29,7 @@ std::vector<fs::path> photograph_folders(const fs::path& capture, const std::vec
     for (std::size_t k = 0; k < std::min(tried, cameras.size()); ++k)
       if (!existing(folder, cameras[k].name).empty()) return found.push_back(folder);
   };
-  for (fs::path around : {capture, capture.parent_path()}) {
+  for (const fs::path& around : {capture, capture.parent_path()}) {
     add_if_used(around);
     std::error_code error;
     for (fs::directory_iterator it(around, error), end; !error && it != end; it.increment(error))

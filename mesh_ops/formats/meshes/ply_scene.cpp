@@ -92,8 +92,9 @@ TexturedMesh flat_colored(const PlyFile& ply, const fs::path& file) {
   ColorImage image{static_cast<int>(side), static_cast<int>(side), std::vector<std::uint8_t>(4 * side * side, 255)};
   for (std::size_t f = 0; f < colors.size(); ++f) {
     std::copy(colors[f].begin(), colors[f].end(), image.rgba.begin() + static_cast<std::ptrdiff_t>(4 * f));
-    const Vec2 uv((static_cast<double>(f % side) + 0.5) / static_cast<double>(side),
-                  1 - (static_cast<double>(f / side) + 0.5) / static_cast<double>(side));
+    const std::size_t column = f % side, row = f / side;
+    const Vec2 uv((static_cast<double>(column) + 0.5) / static_cast<double>(side),
+                  1 - (static_cast<double>(row) + 0.5) / static_cast<double>(side));
     for (int k = 0; k < 3; ++k) mesh.uvs.push_back(uv);
   }
   mesh.material.image = std::make_shared<const ColorImage>(std::move(image));
