@@ -37,6 +37,15 @@ std::array<double, N> list_of(const GltfDocument& document, const json& element,
   return values;
 }
 
+// A finite number; `otherwise` if the key is absent.
+double number_of(const GltfDocument& document, const json& element, const char* key, double otherwise) {
+  const auto found = element.find(key);
+  if (found == element.end()) return otherwise;
+  const double value = found->is_number() ? found->get<double>() : std::nan("");
+  if (!std::isfinite(value)) document.fail(fmt::format("\"{}\" is not a finite number", key));
+  return value;
+}
+
 Affine transform_of(const GltfDocument& document, const json& node) {
   Affine result = Affine::Identity();
   if (node.contains("matrix")) {
@@ -170,8 +179,7 @@ class GltfReader {
     if (!surface.is_object()) document_.fail("\"pbrMetallicRoughness\" is not an object");
     material.factor = list_of<4>(document_, surface, "baseColorFactor", {1, 1, 1, 1});
     const json mode = made.value("alphaMode", json("OPAQUE"));
-    if (mode == "MASK")
-      material.cutoff = list_of<1>(document_, {{"a", {made.value("alphaCutoff", json(0.5))}}}, "a", {0.5})[0];
+    if (mode == "MASK") material.cutoff = number_of(document_, made, "alphaCutoff", 0.5);
     if (mode == "BLEND") {
       material.cutoff = 0.5;
       skipped_.insert("blended transparency is drawn as a cut-out: alpha below 0.5 is a hole");
@@ -206,8 +214,7 @@ class GltfReader {
     if (!made.is_object()) document_.fail("\"KHR_texture_transform\" is not an object");
     const auto move = list_of<2>(document_, made, "offset", {0, 0}),
                size = list_of<2>(document_, made, "scale", {1, 1});
-    const double turn =
-        made.contains("rotation") ? list_of<1>(document_, {{"a", {made.at("rotation")}}}, "a", {0})[0] : 0;
+    const double turn = number_of(document_, made, "rotation", 0);
     // Angles are counter-clockwise for v down, as the extension defines them.
     use.uv = Eigen::Translation2d(move[0], move[1]) * Eigen::Rotation2Dd(-turn) * Eigen::Scaling(size[0], size[1]);
     use.uv_set = document_.number(made, "texCoord", use.uv_set);

@@ -94,7 +94,7 @@ class Meshes : public ::testing::Test {
       "buffers": [{"uri": "square.bin", "byteLength": 92}]})");
     nlohmann::json made = node;
     made["mesh"] = 0;
-    root["nodes"] = {made};
+    root["nodes"] = nlohmann::json::array({made});
     return root;
   }
   TemporaryFolder folder_;
@@ -155,9 +155,9 @@ TEST_F(Meshes, GltfInAllContainers) {
   std::string binary;
   const std::string bytes = read_file(path("square.bin"));
   binary = bytes + corners_png();
-  inside["buffers"] = {{{"byteLength", binary.size()}}};
+  inside["buffers"] = nlohmann::json::array({nlohmann::json{{"byteLength", binary.size()}}});
   inside["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", corners_png().size()}});
-  inside["images"] = {{{"bufferView", 3}, {"mimeType", "image/png"}}};
+  inside["images"] = nlohmann::json::array({nlohmann::json{{"bufferView", 3}, {"mimeType", "image/png"}}});
   std::string text = inside.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   binary.resize((binary.size() + 3) / 4 * 4, '\0');
@@ -339,7 +339,7 @@ TEST_F(Meshes, SharedImagesAreOneTexture) {
 
 TEST_F(Meshes, SamplersClampPerAxis) {
   nlohmann::json root = square_gltf();
-  root["samplers"] = {{{"wrapS", 10497}, {"wrapT", 33071}}};
+  root["samplers"] = nlohmann::json::array({nlohmann::json{{"wrapS", 10497}, {"wrapT", 33071}}});
   root["textures"][0]["sampler"] = 0;
   root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
       {"offset", {1, -1}}};
@@ -378,13 +378,13 @@ TEST_F(Meshes, DamageIsNamed) {
   EXPECT_NE(problem("a.gltf", "{}").find("asset"), std::string::npos);
   EXPECT_NE(problem("a.glb", "glTF\2\0\0\0").find("container"), std::string::npos);
   nlohmann::json root = square_gltf();
-  root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  root["extensionsRequired"] = nlohmann::json::array({"KHR_draco_mesh_compression"});
   EXPECT_NE(problem("a.gltf", root.dump()).find("KHR_draco_mesh_compression"), std::string::npos);
   root = square_gltf();
   root["accessors"][0]["count"] = 400;
   EXPECT_NE(problem("a.gltf", root.dump()).find("outside its buffer view"), std::string::npos);
   root = square_gltf();
-  root["nodes"][0]["children"] = {0};
+  root["nodes"][0]["children"] = nlohmann::json::array({0});
   EXPECT_NE(problem("a.gltf", root.dump()).find("nested deeper"), std::string::npos);
 }
 
