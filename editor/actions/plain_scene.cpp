@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/features/distill/diffuse_network.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/mobilenerf/write_baked_folder.h"
 
@@ -71,7 +70,7 @@ namespace {
 // The plain scene if one decoder represents it exactly.
 Scene exact_scene(const Scene& scene, const FuseOptions& options, PlainReport& report) {
   report.exact = true;
-  const std::vector<Node> merged = merged_for_export(without_bends(with_networks(scene)), options.layout);
+  const std::vector<Node> merged = merged_for_export(without_bends(scene), options.layout);
   if (merged.size() != 1) throw Error("the objects with one decoder could not be merged");
   report.hidden0 = merged.front().object->decoder->hidden0();
   report.hidden1 = merged.front().object->decoder->hidden1();

@@ -37,13 +37,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using nlohmann::json;
 
-// Folder of the batch's own files: per scene a mark when it is done, and the log of its process.
 // Name of a scene's result: that of its folder, or of its file without the extension.
 std::string scene_title(const fs::path& scene) {
   std::error_code error;
   return fs::is_regular_file(scene, error) ? scene.stem().string() : folder_title(scene);
 }
 
+// Folder of the batch's own files: per scene a mark when it is done, and the log of its process.
 fs::path state_folder(const BatchOptions& options) { return options.out / ".rebake-batch"; }
 
 // Hash of the inputs of a result: version, program, script, scene and variables, but not files that the script names. A

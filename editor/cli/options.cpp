@@ -93,9 +93,11 @@ LoadedScene load_scenes(const std::vector<std::string>& folders, const FolderOpt
       scene.background = read.background;
       scene.ground = read.ground;
       scene.light = read.light;
-    } else if (read.light != nullptr || read.background != scene.background) {
+    } else if (read.light != nullptr ||
+               (read.background != Scene{}.background && read.background != scene.background) ||
+               (read.ground != Ground{} && read.ground != scene.ground)) {
       print_message(
-          fmt::format("note: {}: its background and light are not used, but those of the first scene", folder));
+          fmt::format("note: {}: its background, ground and light are not used, but those of the first scene", folder));
     }
     for (const NodePtr& root : read.roots)
       scene = with_added(scene, without_ids(*root), NodeId::none, scene.roots.size());

@@ -65,17 +65,6 @@ void check_journal(const std::filesystem::path& journal, const std::string& scen
   guard.check_file(journal);
 }
 
-// Protects a file that a script reads, and those that it refers to, such as the images of a mesh.
-void protect_with_files_beside(Document& document, const std::filesystem::path& path) {
-  constexpr const char* role = "a file that this script reads";
-  document.protect_file(path, role);
-  try {
-    for (const std::filesystem::path& file : scene_files(path)) document.protect_file(path.parent_path() / file, role);
-  } catch (const Error&) {
-    // A damaged file is protected itself; importing it reports the damage.
-  }
-}
-
 // Protects existing inputs from outputs of earlier lines: files, and the files in scene folders. A scene folder may be
 // replaced as a whole before it is imported, because a script may import its own export and may run again. It may not
 // if the import expects a content hash.
@@ -84,7 +73,7 @@ void protect_input_files(Document& document, const std::string& script,
   for (const ScriptInput& input : script_inputs(script, variables)) {
     std::error_code error;
     if (scene_root(input.path) == input.path && std::filesystem::is_regular_file(input.path, error))
-      protect_with_files_beside(document, input.path);
+      document.protect_input(input.path, "a file that this script reads");
     else if (input.content_known)
       document.protect_input(input.path, "a scene that this script reads");
     else if (const std::filesystem::path folder = scene_root(input.path); std::filesystem::is_directory(folder, error))

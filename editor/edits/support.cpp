@@ -209,6 +209,18 @@ void check_boxes(const nlohmann::json& edit) {
     if (edit.contains(list)) check_boxes(edit.at(list));
 }
 
+Scene moved_in_world(const Scene& scene, NodeId id, const Affine& motion) {
+  const NodeId parent = parent_of(scene, id);
+  const Affine parent_to_world = parent == NodeId::none ? Affine(Affine::Identity()) : present(scene, parent).to_world;
+  const Affine to_world = present(scene, id).to_world;
+  Scene result = with_changed(scene, id, [&](Node& node) {
+    node.to_parent = parent_to_world.matrix().isIdentity(0) ? motion * node.to_parent
+                                                            : parent_to_world.inverse() * motion * to_world;
+  });
+  check_subtree(result, id);
+  return result;
+}
+
 void set_ground(Scene& scene, const Ground& ground) {
   scene.ground = ground;
   if (!scene.light || scene.light->up == ground.normal) return;

@@ -61,6 +61,8 @@ void check_subtree(const Scene& scene, NodeId id);
 
 /// Sets the ground plane, and with its normal the up direction of the sky light.
 void set_ground(Scene& scene, const Ground& ground);
+/// Moves a node and its children by a transform of world space. Throws EditError if one can no longer be drawn.
+Scene moved_in_world(const Scene& scene, NodeId id, const Affine& motion);
 
 /// Throws EditError for a singular transform.
 void check_invertible(const Affine& transform);

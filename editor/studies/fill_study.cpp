@@ -93,8 +93,8 @@ void fill_one(const BakedObject& object, const Vec3& center, double radius, int 
 
 }  // namespace
 
-// Spheres around evenly spread points of the surface are removed and filled. The truth is what was removed; each new
-// texel is compared with the nearest removed one.
+// Spheres around evenly spread points of the surface are removed and filled. Each new texel is compared with the
+// nearest removed one.
 StudyTable study_fill(const StudyInput& input) {
   StudyTable table{
       {"ms", "place error % of the diagonal", "PSNR dB of colours", "radius % of the diagonal", "closed %"},

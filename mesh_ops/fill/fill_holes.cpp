@@ -128,9 +128,22 @@ Vec3 normal_of(const HolePatch& patch) {
   return sum.stableNormalized();
 }
 
-}  // namespace
-
-namespace {
+// The object's sets without the flagged triangles.
+std::vector<TextureSet> sets_without(const BakedObject& object, const TriangleSet& removed) {
+  std::vector<TextureSet> sets;
+  std::size_t first = 0;
+  for (const TextureSet& set : object.sets) {
+    TriangleSet kept;
+    for (std::size_t f = 0; f < set.soup.triangle_count(); ++f) kept.push_back(removed[first + f] == 0 ? 1 : 0);
+    first += kept.size();
+    const std::size_t left = count(kept);
+    if (left == kept.size())
+      sets.push_back(set);
+    else if (left > 0)
+      sets.push_back({subset(set.soup, kept, 0, true), set.texels});
+  }
+  return sets;
+}
 
 // Removes the flagged triangles, and closes the loops of at most `longest` edges.
 FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const HoleLoops& borders, std::size_t longest,
@@ -142,6 +155,9 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
     if (set.texels->alpha_code() != code) throw EditError("the object's textures store alpha in different ways");
   result.open_edges = borders.open_edges;
   const Triangles triangles(object);
+  // 0 if UVs have no area; no hole can then be textured.
+  const double texel = texel_size(triangles, borders.loops);
+  if (!(texel > 0)) longest = 0;
   std::vector<HolePatch> patches;
   std::vector<PatchFeatures> features;
   ColorSteps steps;
@@ -173,20 +189,8 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
   }
   result.color_step = steps.weight > 0 ? std::sqrt(steps.squares / steps.weight) : 0;
   auto made = std::make_shared<BakedObject>(object);
-  made->sets.clear();
-  std::size_t first = 0;
-  for (const TextureSet& set : object.sets) {
-    TriangleSet kept;
-    for (std::size_t f = 0; f < set.soup.triangle_count(); ++f) kept.push_back(removed[first + f] == 0 ? 1 : 0);
-    first += kept.size();
-    const std::size_t left = count(kept);
-    if (left == kept.size())
-      made->sets.push_back(set);
-    else if (left > 0)
-      made->sets.push_back({subset(set.soup, kept, 0, true), set.texels});
-  }
-  const double texel = texel_size(triangles, borders.loops);
-  if (!patches.empty() && texel > 0) {
+  made->sets = sets_without(object, removed);
+  if (!patches.empty()) {
     made->sets.push_back(textured_patches(patches, features, texel, code));
     result.texels = made->sets.back().texels->opaque_count();
   }

@@ -5,7 +5,7 @@
 
 namespace rebake {
 
-/// A filled object and what it took.
+/// Result of filling the holes of an object.
 struct FilledHoles {
   std::shared_ptr<const BakedObject> object;  ///< the patches are its last texture set; null if nothing is left
   std::size_t removed = 0;                    ///< triangles

@@ -32,7 +32,8 @@ void refuse_foreign_content(const std::filesystem::path& folder);
 
 /// Protects a scene from being overwritten, with files and scenes elsewhere that links in it point to.
 void protect_scene(SourceGuard& guard, const std::filesystem::path& path);
-/// Protects a scene as protect_scene(), or a single file. `role`: see SourceGuard::add_file().
+/// Protects a scene as protect_scene(), or a single file with those that a mesh refers to. `role`: see
+/// SourceGuard::add_file().
 void protect_input(SourceGuard& guard, const std::filesystem::path& path,
                    const std::string& role = "a file that this run reads");
 /// As protect_scene(), but allows replacing the whole folder: a script may import its own export and run again. See

@@ -70,7 +70,7 @@ class GpuScene {
   double upload_slice(const Scene& scene, bool coded, double milliseconds);
   /// Evicts the data uploaded by upload_slice() for a scene that was not drawn.
   void evict_staged();
-  /// Records what is resident for prepare(), and drops what it prepared of that.
+  /// Records the resident meshes and surfaces for prepare(), and frees its prepared copies of them.
   void record_held();
   /// Prepares data on the CPU that update() will upload. Callable from any thread; update() prepares the rest.
   void prepare(const Scene& scene, bool coded);

@@ -75,7 +75,7 @@ Similarity motion_by_pairs(const Register& edit, Report& report) {
 }  // namespace
 
 Outcome apply(const Scene& scene, const Register& edit, const Progress& progress) {
-  const PlacedNode placed = editable_with_children(scene, edit.node.id);
+  editable_with_children(scene, edit.node.id);
   if (edit.overlap && !(*edit.overlap >= 0.01 && *edit.overlap <= 1))
     throw FieldError("overlap", "must lie between 0.01 and 1");
   if (edit.samples < 1000 || edit.samples > 1'000'000) throw FieldError("samples", "must lie between 1000 and 1000000");
@@ -104,12 +104,7 @@ Outcome apply(const Scene& scene, const Register& edit, const Progress& progress
           "warning: the overlapping surfaces slide in {} directions, which they do not decide", fit.free_directions));
   }
   if (!motion.matrix().allFinite()) throw EditError("the motion is not finite");
-  const NodeId parent = parent_of(scene, edit.node.id);
-  const Affine parent_to_world = parent == NodeId::none ? Affine(Affine::Identity()) : present(scene, parent).to_world;
-  const Affine to_parent = parent_to_world.inverse() * motion * placed.to_world;
-  Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
-  check_subtree(result, edit.node.id);
-  return {std::move(result), std::move(report)};
+  return {moved_in_world(scene, edit.node.id, motion), std::move(report)};
 }
 
 REBAKE_DESCRIBE_EDIT(

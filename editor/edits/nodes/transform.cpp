@@ -34,17 +34,7 @@ Scene apply(const Scene& scene, const Transform& edit) {
   // A pure translation is exact, without rounding errors from the pivot.
   motion.translation() = linear.isIdentity(0) ? edit.translate : Vec3(pivot + edit.translate - linear * pivot);
   if (!motion.matrix().allFinite()) throw EditError("the transform is not finite");
-  if (!edit.selection) {
-    const Affine parent_to_world = parent_of(scene, edit.node.id) == NodeId::none
-                                       ? Affine(Affine::Identity())
-                                       : present(scene, parent_of(scene, edit.node.id)).to_world;
-    const Affine to_parent = parent_to_world.matrix().isIdentity(0)
-                                 ? motion * placed.node->to_parent
-                                 : parent_to_world.inverse() * motion * placed.to_world;
-    const Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
-    check_subtree(result, edit.node.id);
-    return result;
-  }
+  if (!edit.selection) return moved_in_world(scene, edit.node.id, motion);
   const Affine in_object = placed.to_world.inverse() * motion * placed.to_world;
   check_invertible(in_object);
   // The decoder's view directions are rotated back by the orthogonal factor of the whole transform, in object space.

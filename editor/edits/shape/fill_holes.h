@@ -4,7 +4,7 @@
 
 namespace rebake {
 
-/// Closes holes that a capture has, for example behind an object that hid what is there.
+/// Closes holes in a captured surface, for example where another object hid it.
 struct FillHoles {
   static constexpr const char* op = "fill_holes";
   static constexpr const char* done = "Filled holes of";

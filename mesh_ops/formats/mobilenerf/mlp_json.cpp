@@ -8,6 +8,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/mobilenerf/baked_folder.h"
+#include "mesh_ops/formats/mobilenerf/json_matrix.h"
 #include "mesh_ops/formats/mobilenerf/json_text.h"
 
 namespace rebake {
@@ -128,16 +129,6 @@ json parsed(std::string_view text, const std::filesystem::path& name) {
   }
 }
 
-json rows_of(const Eigen::MatrixXd& matrix) {
-  json rows = json::array();
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    json row = json::array();
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) row.push_back(matrix(r, c));
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
 json list_of(const Eigen::VectorXd& vector) {
   json list = json::array();
   for (const double value : vector) list.push_back(value);
@@ -180,11 +171,11 @@ MlpFile read_mlp_json(std::string_view text, const std::filesystem::path& name) 
 
 std::string write_mlp_json(const MlpFile& file) {
   json root;
-  root["0_weights"] = rows_of(file.decoder.weights0);
+  root["0_weights"] = json_rows(file.decoder.weights0);
   root["0_bias"] = list_of(file.decoder.bias0);
-  root["1_weights"] = rows_of(file.decoder.weights1);
+  root["1_weights"] = json_rows(file.decoder.weights1);
   root["1_bias"] = list_of(file.decoder.bias1);
-  root["2_weights"] = rows_of(file.decoder.weights2);
+  root["2_weights"] = json_rows(file.decoder.weights2);
   root["2_bias"] = list_of(file.decoder.bias2);
   if (file.obj_num) root["obj_num"] = *file.obj_num;
   for (const RuleName& known : rule_names)

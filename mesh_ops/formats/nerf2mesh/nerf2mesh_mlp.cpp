@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/mobilenerf/json_matrix.h"
 #include "mesh_ops/formats/mobilenerf/json_text.h"
 
 namespace rebake {
@@ -41,16 +42,6 @@ Eigen::MatrixXd read_matrix(const json& root, const char* key, std::size_t rows,
     }
   }
   return matrix;
-}
-
-json rows_of(const Eigen::MatrixXd& matrix) {
-  json rows = json::array();
-  for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
-    json row = json::array();
-    for (Eigen::Index c = 0; c < matrix.cols(); ++c) row.push_back(matrix(r, c));
-    rows.push_back(std::move(row));
-  }
-  return rows;
 }
 
 }  // namespace
@@ -106,8 +97,8 @@ std::string write_nerf2mesh_mlp(const Nerf2MeshMlp& mlp) {
   Eigen::MatrixXd first(6, d.hidden0());
   first << d.weights0.middleRows(direction_row, 3), d.weights0.middleRows(specular_row, 3);
   json root;
-  root[first_key] = rows_of(first);
-  root[second_key] = rows_of(d.weights2);
+  root[first_key] = json_rows(first);
+  root[second_key] = json_rows(d.weights2);
   root["cascade"] = mlp.cascade;
   std::string text = root.dump();
   for (const auto& [key, value] : mlp.others) text.insert(text.size() - 1, fmt::format(",\"{}\":{}", key, value));
