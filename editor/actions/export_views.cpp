@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
+
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 
@@ -15,6 +17,11 @@ namespace rebake {
 void run(Session& session, const ExportViewsAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
   refuse_replacing_work(action.out);
+  session.document.sources().check_file(action.out);
+  if (std::error_code error; std::filesystem::is_regular_file(action.out, error) &&
+                             std::filesystem::file_size(action.out, error) > 0 &&
+                             camera_format_at(action.out) == nullptr)
+    throw FileError(action.out, "exists and is not a camera file, so it is not replaced; choose another name");
   if (action.width < 1 || action.width > 1 << 20) throw FieldError("width", "must lie between 1 and 1048576");
   if (action.height < 1 || action.height > 1 << 20) throw FieldError("height", "must lie between 1 and 1048576");
   const CameraFormat& format = camera_format_named(action.format.name.empty() ? "transforms" : action.format.name);

@@ -46,10 +46,12 @@ std::string scene_title(const fs::path& scene) {
 // Folder of the batch's own files: per scene a mark when it is done, and the log of its process.
 fs::path state_folder(const BatchOptions& options) { return options.out / ".rebake-batch"; }
 
-// Hash of the inputs of a result: version, program, script, scene and variables, but not files that the script names. A
-// scene that was done with the same key need not run again.
+// Hash of the inputs of a result: version, program, script, scene, variables and the working folder, from which the
+// script's paths start, but not files that the script names. A scene that was done with the same key need not run
+// again.
 std::string key_of(const BatchOptions& options, std::uint64_t program, std::uint64_t script, const fs::path& scene) {
   std::string all = fmt::format("{} {:016x} {:016x} {:016x}", REBAKE_VERSION, program, script, content_hash_at(scene));
+  all += '\n' + fs::current_path().string();
   for (const std::string& variable : options.variables) all += '\n' + variable;
   return hash_text(content_hash(all));
 }
@@ -95,6 +97,15 @@ bool is_unchanged(const Mark::File& file) {
 bool is_up_to_date(const Mark& mark, const std::string& key) {
   return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_unchanged) &&
          std::all_of(mark.wrote.begin(), mark.wrote.end(), is_unchanged);
+}
+
+// The first output that still exists, but not as it was written; empty if there is none.
+std::string edited_output(const Mark& mark) {
+  const auto edited = std::find_if(mark.wrote.begin(), mark.wrote.end(), [](const Mark::File& file) {
+    std::error_code error;
+    return fs::exists(file.path, error) && !is_unchanged(file);
+  });
+  return edited == mark.wrote.end() ? "" : edited->path;
 }
 
 void set_quality_message(BatchResult& result, bool below_requested_psnr) {
@@ -269,6 +280,16 @@ ScenesByName matched_scenes(const BatchOptions& options) {
   return by_name;
 }
 
+// Whether a batch wrote the result of this name: it is listed as written, or its process did not end well.
+bool written_by_batch(const BatchOptions& options, const std::string& name) {
+  const fs::path state = state_folder(options);
+  if (fs::exists(state / (name + ".unfinished"))) return true;
+  const std::vector<Mark::File> wrote = read_mark(state / (name + ".done")).wrote;
+  return std::any_of(wrote.begin(), wrote.end(), [&](const Mark::File& file) {
+    return absolute_path(file.path) == absolute_path(options.out / name);
+  });
+}
+
 // Refuses to replace scenes that no batch wrote, and what links refer to.
 void check_results(const BatchOptions& options, const ScenesByName& scenes) {
   for (const auto& [name, folder] : scenes) {
@@ -277,9 +298,7 @@ void check_results(const BatchOptions& options, const ScenesByName& scenes) {
     if (fs::is_symlink(result, error))
       throw FieldError(
           "--out", fmt::format("{} is a link, whose target would be replaced; choose another folder", result.string()));
-    const bool by_batch = fs::exists(state_folder(options) / (name + ".log"), error) ||
-                          fs::exists(state_folder(options) / (name + ".done"), error);
-    if (fs::exists(result, error) && !by_batch)
+    if (fs::exists(result, error) && !written_by_batch(options, name))
       throw FieldError("--out",
                        fmt::format("{} exists, but no batch wrote it; choose another folder", result.string()));
   }
@@ -404,7 +423,16 @@ class BatchRun {
         set_quality_message(result, before.below_requested_psnr);
         return false;
       }
+      if (const std::string edited = options_.resume ? edited_output(before) : ""; !edited.empty()) {
+        result.message = fmt::format(
+            "{} was changed after the batch wrote it, and would be replaced; move it elsewhere, or run without "
+            "--resume",
+            edited);
+        return false;
+      }
       for (const Mark::File& output : before.wrote) claims_->release(output.path, result.name);
+      // Until the process has ended, what is at the result's place may be its own.
+      write_file_atomically(state_file(result, ".unfinished"), "", {});
       fs::remove(mark);
       // Remove these names first: if they are links, their targets must not be overwritten.
       for (const char* ending : {".log", ".files"}) fs::remove(state_file(result, ending));
@@ -421,9 +449,15 @@ class BatchRun {
     BatchResult& result = results_[job.scene];
     result.seconds = std::chrono::duration<double>(Clock::now() - job.since).count();
     // Exit code 4: done, but an export missed the PSNR that the script requires.
+    std::error_code error;
+    if (!fs::exists(options_.out / result.name, error)) fs::remove(state_file(result, ".unfinished"), error);
     const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
     if (!below && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
       result.message = last_error(state_file(result, ".log"), status);
+      return;
+    }
+    if (key_of(options_, program_, script_, scenes_[job.scene]) != job.key) {
+      result.message = "the scene changed while it was read; run the batch again";
       return;
     }
     set_quality_message(result, below);
@@ -435,9 +469,11 @@ class BatchRun {
         result.message = fmt::format("{} is also written for {}; put {{name}} into the output path in the script",
                                      output.path, other);
       }
-    if (result.status == BatchResult::Status::done)
+    if (result.status == BatchResult::Status::done) {
       write_file_atomically(state_file(result, ".done"),
                             json{{"key", job.key}, {"below_asked", below}}.dump() + '\n' + files, {});
+      fs::remove(state_file(result, ".unfinished"), error);
+    }
   }
 
   // Also throws Cancelled on cancellation.

@@ -135,6 +135,22 @@ void refuse_replacing_capture(const std::filesystem::path& file, const std::file
     throw FileError(file, "exists in the capture's folder, or is a link; name a new folder for the pictures");
 }
 
+// Protects the photographs of captures that a folder for pictures belongs to.
+void protect_captures_at(const std::filesystem::path& folder, SourceGuard& sources) {
+  std::error_code error;
+  const std::filesystem::path whole = std::filesystem::weakly_canonical(folder, error);
+  for (const std::filesystem::path& place : {whole, whole.parent_path(), whole.parent_path().parent_path()}) {
+    if (!std::filesystem::is_directory(place, error) || camera_format_at(place) == nullptr) continue;
+    try {
+      std::vector<std::string> notes;
+      for (const std::filesystem::path& file : capture_files(place, read_cameras(place, "", {}, notes)))
+        sources.add_file(file, "a file of the capture there");
+    } catch (const Error&) {
+      // Unreadable cameras tell nothing about photographs.
+    }
+  }
+}
+
 // Writes a picture for each camera of a file into a folder, named after the photographs.
 void render_photographs(const Rendering& options) {
   check_photograph_options(options);
@@ -151,6 +167,7 @@ void render_photographs(const Rendering& options) {
     sources.add_file(file, "a camera file of this run");
   for (const std::filesystem::path& file : capture_files(options.cameras, cameras))
     sources.add_file(file, "a file of the capture");
+  protect_captures_at(options.out, sources);
   std::vector<View> views;
   std::vector<std::filesystem::path> files;
   const std::vector<std::string> names = photo_names(cameras);

@@ -56,6 +56,17 @@ std::string file_list(const Session& session, const std::string& script,
   return lines;
 }
 
+// Throws FileError if a file exists that is not an earlier list.
+void check_list(const std::filesystem::path& list) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(list, error) || std::filesystem::file_size(list, error) == 0) return;
+  refuse_replacing_work(list);
+  const std::string text = read_file(list);
+  const json first = json::parse(text.substr(0, text.find('\n')), nullptr, false);
+  if (!first.is_object() || !first.contains("content") || !(first.contains("read") || first.contains("wrote")))
+    throw FileError(list, "exists and is not a list of files; name another file with --list-files, or remove this one");
+}
+
 // Throws FileError if the journal would lie in a source folder of the script, where it would count as one of its files.
 void check_journal(const std::filesystem::path& journal, const std::string& scene, const std::string& script,
                    const std::map<std::string, std::string>& variables) {
@@ -123,7 +134,7 @@ void run_lines(Session& session, const RunOptions& options, const std::string& s
       run(session, action);
     }
     if (!options.files.empty()) {
-      refuse_replacing_work(options.files);
+      check_list(options.files);  // once more: the script may have written this file
       write_file_atomically(options.files, file_list(session, script, variables), session.document.sources());
     }
   } catch (const Error&) {
@@ -149,6 +160,7 @@ void run_with(const RunOptions& options) {
   session.say = print_message;
   if (!options.sources.empty())
     protect_listed(session.document, options.sources, options.scene.empty() ? "" : folder_title(options.scene));
+  if (!options.files.empty()) check_list(options.files);
   const std::string script = read_input(options.script);
   session.document.protect_file(options.script, "the script of this run");
   if (!options.scene.empty()) {

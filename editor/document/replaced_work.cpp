@@ -36,6 +36,15 @@ void refuse_replacing_foreign(const fs::path& path) {
     throw FileError(path, "was written by a newer version of Rebake, so it is not replaced; choose another name");
 }
 
+std::vector<std::string> edits_in(const fs::path& project) {
+  std::vector<std::string> edits;
+  if (!holds_project(project)) return edits;
+  const nlohmann::json root = nlohmann::json::parse(read_file(project), nullptr, false);
+  if (!root.is_object() || !root.contains("edits") || !root.at("edits").is_array()) return edits;
+  for (const nlohmann::json& edit : root.at("edits")) edits.push_back(edit.dump());
+  return edits;
+}
+
 void refuse_replacing_more(const fs::path& path, std::size_t edits) {
   std::error_code error;
   if (!fs::exists(path, error)) return;

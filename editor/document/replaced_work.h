@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace rebake {
 
@@ -13,6 +15,9 @@ void refuse_replacing_work(const std::filesystem::path& path);
 
 /// For every project that is written: throws FileError if the file exists and is no project, or one of a newer version.
 void refuse_replacing_foreign(const std::filesystem::path& path);
+
+/// The edits of a project as JSON text, in order; empty if the file is no readable project.
+std::vector<std::string> edits_in(const std::filesystem::path& project);
 
 /// For projects that are written by name: throws FileError if the file exists and is another file than a project, a
 /// damaged project, one of a newer version, or one with more than `edits` edits.

@@ -11,11 +11,13 @@
 #include "editor/actions/lit.h"
 #include "editor/actions/save.h"
 #include "editor/actions/views.h"
+#include "editor/document/replaced_work.h"
 #include "editor/edits/support.h"
 #include "editor/fields/codec.h"
 #include "editor/python/json_python.h"
 #include "editor/python/py_document.h"
 #include "editor/python/stub.h"
+#include "mesh_ops/base/files.h"
 #include "render/picture.h"
 
 using nlohmann::json;
@@ -164,15 +166,20 @@ void add_document_methods(py::class_<PyDocument>& type) {
       [](PyDocument& document, const std::filesystem::path& path) {
         std::vector<std::string> warnings;
         document.work([&](Session& session) {
-          if (path.extension() == ".rebake")
-            warnings = session.document.save(path, session.progress);
-          else
+          if (path.extension() != ".rebake") {
             run(session, SaveAction{path.string()});
+            return;
+          }
+          if (absolute_path(path) != document.project)
+            refuse_replacing_more(path, session.document.history().undo_count());
+          warnings = session.document.save(path, session.progress);
+          document.project = absolute_path(path);
         });
         for (const std::string& warning : warnings)
           if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
       },
-      py::arg("path"), "Writes a project (.rebake), or a scene folder with all nodes.");
+      py::arg("path"),
+      "Writes a project (.rebake), or a scene folder with all nodes. Another project with more edits is not replaced.");
   type.def("render", &render_picture, py::arg("width") = 800, py::arg("height") = 800, py::arg("samples") = 4,
            py::arg("camera") = py::none(), py::arg("view") = "", "Renders a picture, uint8, height × width × 3.");
   add_edit_methods(type);

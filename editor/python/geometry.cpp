@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 
+#include <algorithm>
+
 #include "editor/edits/deform/cage.h"
 #include "editor/fields/codec.h"
 #include "editor/python/json_python.h"
@@ -72,11 +74,19 @@ py::array_t<double> move_by_cage(const py::object& points, const py::object& ver
   const Cage cage = checked_cage({corners, faces_from(faces, corners.size())});
   if (targets.size() != cage.vertices.size()) throw FieldError("moved", "must have as many rows as vertices");
   const CageCoordinates coordinates = Codec<CageCoordinates>::read(json(kind), {});
-  std::vector<Vec3> moved_places;
+  DeformedPoints deformed;
   run_without_gil(py::none(), [&](const Progress& progress) {
     const auto weights = coordinates_of(cage, coordinates, resolution, progress);
-    moved_places = deform_points(*weights, cage, targets, places, false, progress).points;
+    deformed = deform_points(*weights, cage, targets, places, false, progress);
   });
+  const std::vector<Vec3>& moved_places = deformed.points;
+  if (const auto outside = std::count(deformed.outside.begin(), deformed.outside.end(), 1); outside > 0) {
+    const auto first = std::find(deformed.outside.begin(), deformed.outside.end(), 1) - deformed.outside.begin();
+    const std::string warning =
+        fmt::format("{} points are outside the cage, where {} coordinates are undefined, and stay (first: row {})",
+                    outside, kind, first);
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
+  }
   for (std::size_t k = 0; k < moved_places.size(); ++k)
     if (!moved_places[k].allFinite())
       throw FieldError("points", fmt::format("row {} is too far from the cage for coordinates", k));
@@ -98,7 +108,8 @@ py::tuple wrap_triangles(const py::object& points, const py::object& faces, doub
 void add_geometry(py::module_& module) {
   module.def("move_by_cage", &move_by_cage, py::arg("points"), py::arg("vertices"), py::arg("faces"), py::arg("moved"),
              py::arg("coordinates") = "mean_value", py::arg("resolution") = 32,
-             "Deforms points by a closed cage whose vertices move.");
+             "Deforms points by a closed cage whose vertices move. Points outside the cage stay with Green's and "
+             "harmonic coordinates, with a warning.");
   module.def("wrap", &wrap_triangles, py::arg("points"), py::arg("faces"), py::arg("coarseness") = 0.1,
              "Wraps triangles with a closed cage; returns its vertices and faces.");
 }

@@ -10,6 +10,7 @@
 #include "editor/fields/codec.h"
 #include "editor/python/json_python.h"
 #include "editor/python/py_document.h"
+#include "mesh_ops/base/files.h"
 
 using nlohmann::json;
 
@@ -54,6 +55,7 @@ std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, con
   });
   auto document = std::make_unique<PyDocument>(std::move(*opened));
   document->progress = callback;
+  if (is_project_file(path)) document->project = absolute_path(path);
   return document;
 }
 

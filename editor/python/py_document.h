@@ -21,6 +21,7 @@ class PyDocument {
   explicit PyDocument(Document document) { session_.document = std::move(document); }
 
   py::object progress = py::none();  ///< progress callback, or None
+  std::filesystem::path project;     ///< project file that was opened or saved last; empty: none
 
   /// Runs `job` with run_without_gil(). If the callback uses this document, it waits until the job is done.
   void work(const std::function<void(Session&)>& job) {

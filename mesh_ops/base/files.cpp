@@ -196,6 +196,21 @@ void refuse_write_protected(const fs::path& path) {
     throw FileError(path, "is write-protected; choose another name, or make it writable first");
 }
 
+// Refuses to replace a folder with write-protected files, and the current folder: relative paths would end in the old
+// one, which is deleted.
+void refuse_replacing_folder(const fs::path& folder) {
+  refuse_write_protected(folder);
+  std::error_code error;
+  for (auto entry = fs::recursive_directory_iterator(folder, error); !error && entry != fs::end(entry);
+       entry.increment(error))
+    if (!entry->is_symlink(error)) refuse_write_protected(entry->path());
+  for (fs::path at = fs::current_path(error); !error && !at.empty(); at = at.parent_path()) {
+    if (fs::equivalent(at, folder, error))
+      throw FileError(folder, "is the current folder, or contains it, so it cannot be replaced; write to a new folder");
+    if (at == at.parent_path()) break;
+  }
+}
+
 // Resolves symbolic links: the target of a link is replaced, not the link.
 fs::path followed(const fs::path& path) {
   std::error_code error;
@@ -330,7 +345,7 @@ AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
   if (fs::exists(target_, error)) {
     if (!fs::is_directory(target_)) throw FileError(target_, "is a file; name a folder to write to");
     may_replace(target_);
-    refuse_write_protected(target_);
+    refuse_replacing_folder(target_);
   }
   make_folders(target_.parent_path());
   std::string hidden = ".";

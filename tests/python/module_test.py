@@ -143,6 +143,29 @@ class Module(unittest.TestCase):
         project = rebake.open(self.at / "p.rebake")
         np.testing.assert_allclose(project.nodes[0]["to_world"][:3, 3], [0, 1, 0])
 
+    def test_saving_does_not_replace_a_project_with_more_edits(self):
+        self.document.transform(node="ficus", translate=[0, 1, 0])
+        self.document.save(self.at / "p.rebake")
+        before = (self.at / "p.rebake").read_bytes()
+        with self.assertRaisesRegex(rebake.FileError, "contains 2 edits, more than the 0 to be saved"):
+            rebake.Document().save(self.at / "p.rebake")
+        self.assertEqual((self.at / "p.rebake").read_bytes(), before)
+        self.document.undo()
+        self.document.save(self.at / "p.rebake")
+        opened = rebake.open(self.at / "p.rebake")
+        opened.undo()
+        opened.save(self.at / "p.rebake")
+        self.assertEqual(rebake.open(self.at / "p.rebake").edits(), [])
+
+    def test_green_coordinates_warn_of_points_outside(self):
+        vertices = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+        faces = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
+                          [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]], np.uint32)
+        points = np.array([[0.5, 0.5, 0.5], [3, 0.5, 0.5]])
+        with self.assertWarnsRegex(UserWarning, "1 points are outside the cage.*first: row 1"):
+            moved = rebake.move_by_cage(points, vertices, faces, vertices + [1, 0, 0], "green")
+        np.testing.assert_allclose(moved, [[1.5, 0.5, 0.5], [3, 0.5, 0.5]])
+
     def test_an_opened_scene_keeps_its_background(self):
         self.document.background(color=[1, 0, 0])
         self.document.save(self.at / "scene")

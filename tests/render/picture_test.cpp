@@ -125,6 +125,11 @@ TEST_P(PictureBySamples, OtherColorRules) {
   }
 }
 
+TEST_P(PictureBySamples, FolderThatNerf2MeshWrote) {
+  const auto scene = read_any(REBAKE_SOURCE "/tests/mesh_ops/formats/nerf2mesh/written_by_nerf2mesh", Axes::y_up);
+  expect_as_cast(scene, view_from({1.5, 1.5, 3}, GetParam()));
+}
+
 TEST_P(PictureBySamples, RotatedTriangles) {
   const auto object = made_object();
   TriangleSet flags(object->triangle_count());

@@ -134,6 +134,11 @@ EditSource SelectMasks::input() const {
 void SelectMasks::set_input(const EditSource& source) {
   path = source.path.string();
   content = source.content;
+  // Relative to the capture, so that masks are found again when both have moved.
+  if (fs::path(masks).is_absolute()) {
+    const fs::path relative = fs::path(masks).lexically_relative(capture_folder(path));
+    if (!relative.empty()) masks = relative.string();
+  }
   if (!masks_content.empty()) return;
   std::vector<std::string> notes;
   masks_content = hash_of(photographs_of(*this, notes));

@@ -58,6 +58,30 @@ TEST_F(Guards, RejectsOutputsOverTheJournal) {
   EXPECT_EQ(program("recover {}/work.journal -o {}/back.rebake --replace"), 0) << log();
 }
 
+TEST_F(Guards, ListsOfFilesReplaceOnlyLists) {
+  write("script.jsonl", import_line() + fmt::format(R"({{"op": "render", "out": "{}", "width": 8, "height": 8}})",
+                                                    path("r.png").string()));
+  write("notes.txt", "mine\n");
+  EXPECT_EQ(program("run {}/script.jsonl --list-files {}/notes.txt"), 1);
+  EXPECT_NE(log().find("is not a list of files"), std::string::npos) << log();
+  EXPECT_EQ(read_file(path("notes.txt")), "mine\n");
+  EXPECT_FALSE(fs::exists(path("r.png"))) << "refused before the run";
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(program("run {}/script.jsonl --list-files {}/list"), 0) << log();
+  EXPECT_EQ(program("run {}/script.jsonl --list-files {}/r.png"), 1);
+  EXPECT_TRUE(read_file(path("r.png")).starts_with("\x89PNG")) << "an output of the same run";
+}
+
+TEST_F(Guards, ViewsReplaceOnlyCameraFiles) {
+  const std::string out = path("views.json").string();
+  write("script.jsonl", import_line() +
+                            R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}})" + "\n" +
+                            fmt::format(R"({{"op": "export_views", "out": "{}"}})", out));
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(program("run {}/script.jsonl"), 0) << log();
+  write("views.json", R"({"mine": 1})");
+  EXPECT_EQ(program("run {}/script.jsonl"), 1);
+  EXPECT_EQ(read_file(out), R"({"mine": 1})");
+}
+
 TEST_F(Guards, RejectsProjectOverAnotherJournal) {
   write("script.jsonl", import_line() + R"({"op": "no such op"})");
   EXPECT_EQ(program("run {}/script.jsonl --journal {}/other.rebake"), 1);
@@ -84,6 +108,10 @@ TEST_F(Guards, ProjectsAreNotReplacedByOtherOutputsNorBySmallerProjects) {
   write("small.jsonl", import_line() + save);
   EXPECT_EQ(program("run {}/large.jsonl"), 0) << log();
   EXPECT_EQ(program("run {}/large.jsonl"), 0) << log();
+  EXPECT_EQ(log().find("it replaced a project"), std::string::npos) << log();
+  write("large.jsonl", import_line() + R"({"op": "background", "color": [0, 1, 0]})" + "\n" + save);
+  EXPECT_EQ(program("run {}/large.jsonl"), 0) << log();
+  EXPECT_NE(log().find("it replaced a project with 1 other edits"), std::string::npos) << log();
   const std::string project = read_file(path("p.rebake"));
   for (const char* command :
        {"run {}/small.jsonl", "run {}/small.jsonl --list-files {}/p.rebake", "render {}/p.rebake -o {}/p.rebake",

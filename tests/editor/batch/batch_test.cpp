@@ -107,6 +107,40 @@ TEST_F(Batch, ResumeSkipsValidResults) {
   EXPECT_EQ(run()["b"], Status::done) << "other variables may give another result";
 }
 
+TEST_F(Batch, ResumeKeepsEditedResults) {
+  run();
+  std::ofstream(options.out / "a/mlp.json", std::ios::app) << "\n\n";
+  std::ofstream(folder_.path() / "scenes/a/mlp.json", std::ios::app) << " ";
+  const auto edited = folder_bytes(options.out / "a");
+  options.resume = true;
+  EXPECT_EQ(run()["a"], Status::failed);
+  EXPECT_NE(messages["a"].find("was changed after the batch wrote it"), std::string::npos) << messages["a"];
+  EXPECT_EQ(folder_bytes(options.out / "a"), edited);
+  options.resume = false;
+  EXPECT_EQ(run()["a"], Status::done);
+  EXPECT_NE(folder_bytes(options.out / "a"), edited);
+}
+
+TEST_F(Batch, ScenesThatChangeDuringTheRunAreNotDone) {
+  // The script writes beside the scene's own files.
+  write_text(options.script, R"({"op": "render", "out": "{path}/feat0_picture.png", "width": 8, "height": 8})"
+                             "\n");
+  options.scenes = {(folder_.path() / "scenes/a").string()};
+  options.resume = true;
+  run();
+  EXPECT_FALSE(fs::exists(options.out / ".rebake-batch/a.done"));
+}
+
+TEST_F(Batch, ResumeNoticesAnotherWorkingFolder) {
+  run();
+  options.resume = true;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path());
+  const auto statuses = run();
+  fs::current_path(before);
+  EXPECT_EQ(statuses.at("a"), Status::done) << "paths of the script start elsewhere";
+}
+
 TEST_F(Batch, KeepsScenesThatNoBatchWrote) {
   std::filesystem::create_directories(options.out);
   std::filesystem::copy(folder_.path() / "scenes/b", options.out / "a");
@@ -114,6 +148,18 @@ TEST_F(Batch, KeepsScenesThatNoBatchWrote) {
   EXPECT_THROW(run(), FieldError);
   EXPECT_EQ(folder_bytes(options.out), before);
   std::filesystem::remove_all(options.out / "a");
+  // Nor a scene at the place of one that a batch tried to write, or wrote elsewhere.
+  const std::string script = read_file(options.script);
+  for (const std::string& line :
+       {std::string(R"({"op": "remove", "node": "none"})"),
+        R"({"op": "export", "out": ")" + (folder_.path() / "else").string() + R"(/{name}"})"}) {
+    write_text(options.script, line);
+    run();
+    std::filesystem::copy(folder_.path() / "scenes/b", options.out / "a");
+    write_text(options.script, script);
+    EXPECT_THROW(run(), FieldError);
+    std::filesystem::remove_all(options.out / "a");
+  }
   std::filesystem::create_directory_symlink(folder_.path() / "elsewhere", options.out / "a");
   EXPECT_THROW(run(), FieldError);
 }
@@ -160,8 +206,11 @@ TEST_F(Batch, ResumeChecksInputsAndOutputs) {
   EXPECT_EQ(run()["a"], Status::skipped);
   for (const auto& file : fs::recursive_directory_iterator(options.out / "a"))
     if (file.path().extension() == ".png") fs::resize_file(file.path(), 100);
-  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::skipped}, {"c", Status::skipped}}))
-      << "a truncated result must be made again";
+  EXPECT_EQ(run(),
+            (std::map<std::string, Status>{{"a", Status::failed}, {"b", Status::skipped}, {"c", Status::skipped}}))
+      << "a result that is not as it was written is reported";
+  options.resume = false;
+  EXPECT_EQ(run()["a"], Status::done);
 }
 
 TEST_F(Batch, ShardsDetectACommonOutputFolder) {
@@ -227,6 +276,7 @@ TEST_F(Batch, RejectsReportOverInputFile) {
 TEST_F(Batch, OwnFilesDoNotFollowLinks) {
   run();
   write_text(folder_.path() / "precious", "kept");
+  fs::remove_all(options.out / "a");
   for (const char* file : {"a.log", "a.files", "a.done"}) {
     fs::remove(options.out / ".rebake-batch" / file);
     fs::create_symlink(folder_.path() / "precious", options.out / ".rebake-batch" / file);

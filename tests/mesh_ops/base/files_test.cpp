@@ -106,7 +106,23 @@ TEST(Files, DoesNotReplaceWriteProtected) {
   fs::permissions(scene, fs::perms::owner_read | fs::perms::owner_exec);
   EXPECT_THROW(AtomicFolder(scene, {}, [](const fs::path&) {}), FileError);
   fs::permissions(scene, fs::perms::owner_all);
+  write_text(scene / "original", "precious");
+  fs::permissions(scene / "original", fs::perms::owner_read);
+  EXPECT_THROW(AtomicFolder(scene, {}, [](const fs::path&) {}), FileError);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2) << "nothing half-written";
+}
+
+TEST(Files, DoesNotReplaceTheCurrentFolder) {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path() / "at/below");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path() / "at/below");
+  for (const char* out : {".", "..", "../../at"})
+    EXPECT_THROW(AtomicFolder(out, {}, [](const fs::path&) {}), FileError) << out;
+  {
+    const AtomicFolder beside("../beside", {}, [](const fs::path&) {});
+  }
+  fs::current_path(before);
 }
 
 TEST(Files, RemovesOnlyLeftoversOfKilledWrites) {

@@ -182,6 +182,21 @@ TEST_F(SelectMasksTest, ReplayNoticesChangedMasks) {
   EXPECT_THROW(Document::open(path("a.rebake"), {}, {}), Error);
 }
 
+TEST_F(SelectMasksTest, MovedMasksAreFoundBesideTheMovedCapture) {
+  write_masks([](int, std::uint8_t label) { return label == 2 ? 255 : 0; });
+  fs::create_directories(path("elsewhere"));
+  fs::rename(path("shoot/masks"), path("elsewhere/masks"));
+  json line = edit();
+  line["masks"] = path("elsewhere/masks").string();
+  act(document_, line);
+  document_.save(path("a.rebake"), {});
+  fs::create_directories(path("moved"));
+  fs::rename(path("shoot"), path("moved/shoot"));
+  fs::rename(path("elsewhere"), path("moved/elsewhere"));
+  const Document opened = Document::open(path("a.rebake"), {{path("shoot"), path("moved/shoot")}}, {});
+  EXPECT_EQ(*find(opened.scene(), "other")->selection, *find(document_.scene(), "other")->selection);
+}
+
 TEST_F(SelectMasksTest, ScriptsProtectMasksAndPhotographsOfLaterLines) {
   write_masks([](int, std::uint8_t label) { return label == 2 ? 255 : 0; });
   write_text(path("shoot/photo0.jpg"), "a photograph");

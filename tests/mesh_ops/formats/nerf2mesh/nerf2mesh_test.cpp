@@ -1,6 +1,7 @@
 // Folders of nerf2mesh: read, drawn, edited and written back.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "mesh_ops/base/error.h"
@@ -57,6 +58,38 @@ TEST(Nerf2Mesh, ColoursFollowThePublishedFormula) {
       EXPECT_TRUE(((expected - range.low).array() >= 0).all() && ((range.high - expected).array() >= 0).all());
     }
   }
+}
+
+// A folder by nerf2mesh itself; its mlp.json has rows of weights per input, the direction's three first.
+TEST(Nerf2Mesh, ReadsWhatNerf2MeshWrote) {
+  const fs::path source = fs::path(REBAKE_SOURCE) / "tests/mesh_ops/formats/nerf2mesh/written_by_nerf2mesh";
+  const auto object = read_nerf2mesh_folder(source);
+  ASSERT_EQ(object->sets.size(), 2U);
+  EXPECT_EQ(object->sets[0].soup.triangle_count(), 80U);
+  EXPECT_EQ(object->sets[1].soup.triangle_count(), 6U);
+  const nlohmann::json mlp = nlohmann::json::parse(read_file(source / "mlp.json"));
+  const auto& first = mlp.at("net.0.weight");
+  const auto& second = mlp.at("net.1.weight");
+  ASSERT_EQ(first.size(), 6U);
+  const std::array<double, 8> features{1, 0.25, 0.5, 0.125, 0.9, 0.1, 0.6, 0};
+  const Vec3 direction = Vec3(0.3, -0.8, 0.4).normalized();
+  const double inputs[] = {direction.x(), direction.y(), direction.z(), features[4], features[5], features[6]};
+  for (std::size_t c = 0; c < 3; ++c) {
+    double sum = 0;
+    for (std::size_t h = 0; h < second.size(); ++h) {
+      double hidden = 0;
+      for (std::size_t k = 0; k < 6; ++k) hidden += inputs[k] * first.at(k).at(h).get<double>();
+      sum += std::max(hidden, 0.0) * second.at(h).at(c).get<double>();
+    }
+    const double expected = std::min(1.0, features[1 + c] + 1 / (1 + std::exp(-sum)));
+    EXPECT_NEAR(decode(*object->decoder, features, direction)[static_cast<Eigen::Index>(c)], expected, 1e-12);
+  }
+  const TemporaryFolder folder;
+  const Scene scene = read_any(source, Axes::y_up);
+  EXPECT_TRUE(format_named("nerf2mesh").write(scene, folder.path() / "out", {}, {}).notes.empty());
+  auto expected = folder_bytes(source);
+  expected.erase("README.md");
+  EXPECT_EQ(folder_bytes(folder.path() / "out"), expected);
 }
 
 TEST(Nerf2Mesh, StandsUpright) {
