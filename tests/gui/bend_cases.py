@@ -193,6 +193,52 @@ class BendTest(WindowCase):
         editor.click("options/lowest-point")
         self.assertTrue(editor.last_edit()["foot"])
 
+    def test_a_known_length_scales_the_scene(self):
+        editor = self.open_ficus()
+        editor.click("tool/Measure")
+        for share in ((0.43, 0.70), (0.47, 0.72)):
+            editor.click(*editor.in_viewport(*share))
+        self.assertGreater(abs(editor.where("measure/1")[0] - editor.where("measure/0")[0]), 10)
+        editor.click("options/length")
+        editor.type("0.82")
+        editor.key("Return")
+        editor.settle()
+        edit = editor.last_edit()
+        self.assertEqual((edit["op"], edit["length"], len(edit["points"])), ("set_length", 0.82, 2))
+        # The points scale with the scene: the length stays without another edit.
+        editor.click("options/length")
+        editor.type("0.82")
+        editor.key("Return")
+        self.assertEqual(editor.ops(), ["import", "set_length"])
+
+    def test_a_capture_is_registered_by_clicked_pairs(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        pairs = (((0.35, 0.42), (0.42, 0.74)), ((0.50, 0.42), (0.49, 0.73)), ((0.43, 0.55), (0.45, 0.69)))
+        editor.click("outline/kettle/name")
+        editor.click("tool/Register")
+        editor.click(*editor.in_viewport(*pairs[0][1]))
+        editor.until(lambda state: any('Click a point of "kettle" first' in text for text in state["messages"]), "said")
+        for kettle, pot in pairs:
+            editor.click(*editor.in_viewport(*kettle))
+            editor.click(*editor.in_viewport(*pot))
+        editor.settle()
+        editor.key("BackSpace")  # removes the last point, and one more click sets it again
+        editor.settle()
+        self.assertNotIn("register-onto/2", editor.state()["items"])
+        editor.click(*editor.in_viewport(*pairs[2][1]))
+        editor.settle()
+        places = [editor.where(f"register-onto/{k}") for k in range(3)]
+        editor.click("options/refine")
+        editor.click("options/register")
+        editor.settle()
+        edit = editor.last_edit()
+        self.assertEqual((edit["op"], len(edit["points"]), len(edit["onto"]), edit["refine"]), ("register", 3, 3, False))
+        for (x, y), (_, share) in zip(places, pairs):
+            seen = editor.in_viewport(*share)
+            self.assertLess(abs(x - seen[0]) + abs(y - seen[1]), 3, "counterparts are where they were clicked")
+        self.assertNotIn("register-from/0", editor.state()["items"], "the pairs are used up")
+
     def test_bend_a_branch_from_its_stem(self):
         editor = self.open_ficus()
         editor.key("l", "t")

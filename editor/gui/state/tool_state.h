@@ -21,7 +21,9 @@ enum class ToolKind {
   cage,
   bend,
   handles,
-  ground
+  ground,
+  measure,
+  register_captures
 };
 
 /// The active tool, and options that tools share.

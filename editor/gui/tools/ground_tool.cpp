@@ -4,10 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "editor/edits/nodes/ground.h"
-#include "editor/gui/ui/announce.h"
+#include "editor/gui/tools/picked_points.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/ui/widgets.h"
 
@@ -40,29 +39,14 @@ void GroundTool::add(ToolContext& editor, const Vec3& point) {
 }
 
 void GroundTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
-  if (!click_.ends(pointer)) return;
-  auto picked = std::make_shared<std::optional<PickHit>>();
-  editor.jobs.worker.start(
-      "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },
-      [this, &editor, picked] {
-        if (*picked)
-          add(editor, (*picked)->world);
-        else
-          editor.messages.say("There is no surface at this pixel. Click three points on the floor.");
-      });
+  if (click_.ends(pointer))
+    pick_point(editor, lens, pointer.at, "There is no surface at this pixel. Click three points on the floor.",
+               [this, &editor](const PickHit& hit) { add(editor, hit.world); });
 }
 
 void GroundTool::draw(const ToolContext& /*editor*/, const ViewportProjection& lens, const Pointer& /*pointer*/,
                       ImDrawList& list, const ImVec2& origin) const {
-  const announce::Part part("ground");
-  for (std::size_t k = 0; k < points_.size(); ++k) {
-    const auto pixel = lens.pixel(points_[k]);
-    if (!pixel) continue;
-    const ImVec2 at = on_screen(*pixel, origin);
-    announce::point(fmt::format("{}", k), at);
-    list.AddCircleFilled(at, px(7), IM_COL32(0, 0, 0, 170));
-    list.AddCircleFilled(at, px(5), IM_COL32(120, 230, 140, 255));
-  }
+  draw_points("ground", points_, lens, list, origin, IM_COL32(120, 230, 140, 255));
 }
 
 void GroundTool::options(ToolContext& editor) {

@@ -3,8 +3,10 @@
 #include "editor/gui/tools/gizmo.h"
 #include "editor/gui/tools/ground_tool.h"
 #include "editor/gui/tools/handles_tool.h"
+#include "editor/gui/tools/measure_tool.h"
 #include "editor/gui/tools/pick_tool.h"
 #include "editor/gui/tools/region_tool.h"
+#include "editor/gui/tools/register_tool.h"
 #include "editor/gui/tools/volume_tool.h"
 #include "editor/gui/ui/icons.h"
 
@@ -24,6 +26,8 @@ Tools make_tools() {
   tools[ToolKind::handles] = std::make_unique<HandlesTool>();
   tools[ToolKind::cage] = std::make_unique<CageTool>();
   tools[ToolKind::ground] = std::make_unique<GroundTool>();
+  tools[ToolKind::measure] = std::make_unique<MeasureTool>();
+  tools[ToolKind::register_captures] = std::make_unique<RegisterTool>();
   return tools;
 }
 
@@ -44,6 +48,8 @@ std::span<const ToolButton> tool_buttons() {
       {icons::vector_curve, "Bend, twist, taper", ToolKind::bend},
       {icons::pin, "Handles", ToolKind::handles},
       {icons::grid, "Ground", ToolKind::ground, true},
+      {icons::ruler, "Measure", ToolKind::measure},
+      {icons::vector_point, "Register", ToolKind::register_captures},
   };
   return buttons;
 }

@@ -70,6 +70,8 @@ constexpr const char* layers_off = "\xEF\x8C\xA9";
 constexpr const char* image = "\xEF\x8B\xA9";
 constexpr const char* image_multiple = "\xEF\x8B\xB9";
 constexpr const char* package_variant = "\xEF\x8F\x96";
+constexpr const char* ruler = "\xEF\x91\xAD";
+constexpr const char* vector_point = "\xEF\x95\x9F";
 constexpr const char* filmstrip = "\xEF\x88\xB0";
 
 }  // namespace rebake::icons
