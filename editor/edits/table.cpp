@@ -30,6 +30,7 @@
   X(Drop) \
   X(Align) \
   X(Register) \
+  X(MatchColors) \
   X(SetLength) \
   X(Select) \
   X(SelectPicture) \

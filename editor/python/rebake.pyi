@@ -290,6 +290,14 @@ class Document:
         overlap: share of the node's surface that the other capture has, too; default: found
         samples: points of the node's surface, 1000 to 1000000; five times as many of the other
         """
+    def match_colors(self, *, node: Node, to: Node | None = None, gain: bool = True, distance: float = 0.005) -> None:
+        """Changes a capture's brightness and contrast per channel so that its colours are those of another capture where both have the same surfaces; register it first.
+
+        node: node whose colours change
+        to: node whose colours stay; default: all other visible objects
+        gain: change the contrast, too
+        distance: largest distance of common points, as a share of the smaller capture's diagonal
+        """
     def set_length(self, *, points: Sequence[Sequence[float]], length: float) -> None:
         """Scales the whole scene about the origin, with its views and ground, so that two points get a known distance.
 

@@ -54,6 +54,7 @@ StudyTable study_light(const StudyInput& input);
 StudyTable study_slim(const StudyInput& input);
 StudyTable study_masks(const StudyInput& input);
 StudyTable study_register(const StudyInput& input);
+StudyTable study_colors(const StudyInput& input);
 StudyTable study_fill(const StudyInput& input);
 
 /// All studies, in the order of `rebake study --help`.
@@ -70,6 +71,7 @@ inline constexpr Study study_table[] = {
     {"slim", "removal of invisible triangles, and fewer bits per feature: size, image error, frame time", study_slim},
     {"masks", "selection by masks: photographs and wrong pixels", study_masks},
     {"register", "registration of captures: overlap, outliers and error", study_register},
+    {"colors", "matching of two captures' colours: exposure, samples and error", study_colors},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
 

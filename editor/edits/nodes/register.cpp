@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "editor/edits/describe_edit.h"
+#include "editor/edits/nodes/capture_pair.h"
 #include "mesh_ops/registration/trimmed_icp.h"
 
 namespace rebake {
@@ -17,35 +17,6 @@ constexpr double certain_spread = 0.05;
 constexpr double largest_change = 1.5, largest_turn = 45;
 // Residuals, relative to the extent of the points, above which pairs are doubtful.
 constexpr double doubtful_residual = 0.05;
-
-void add_ids(const NodePtr& node, std::set<NodeId>& ids) {
-  ids.insert(node->id);
-  for (const NodePtr& child : node->children) add_ids(child, ids);
-}
-
-struct Sides {
-  std::vector<PlacedNode> moved, fixed;
-};
-
-// The objects that move and those that stay.
-Sides sides_of(const Scene& scene, const Register& edit) {
-  std::set<NodeId> moved, fixed;
-  add_ids(find(scene, edit.node.id), moved);
-  if (edit.to) add_ids(find(scene, edit.to->id), fixed);
-  Sides sides;
-  for (PlacedNode& placed : placed_nodes(scene)) {
-    if (!placed.visible || !placed.node->object) continue;
-    const bool moves = moved.contains(placed.node->id), stays = edit.to ? fixed.contains(placed.node->id) : !moves;
-    if (moves && stays) throw FieldError("to", "is the node itself, or in it");
-    if (moves)
-      sides.moved.push_back(std::move(placed));
-    else if (stays)
-      sides.fixed.push_back(std::move(placed));
-  }
-  if (sides.moved.empty()) throw FieldError("node", "has no visible object");
-  if (sides.fixed.empty()) throw FieldError("to", "has no visible object that could stay");
-  return sides;
-}
 
 std::string words_of(const Similarity& motion) {
   return fmt::format("rotated by {:.4g}°, scaled by {:.6g}, moved by {:.6g}", motion.degrees(), motion.scale,
@@ -80,12 +51,12 @@ Outcome apply(const Scene& scene, const Register& edit, const Progress& progress
     throw FieldError("overlap", "must lie between 0.01 and 1");
   if (edit.samples < 1000 || edit.samples > 1'000'000) throw FieldError("samples", "must lie between 1000 and 1000000");
   if (!edit.refine && edit.points.points.empty()) throw FieldError("points", "must be given, unless refine is true");
-  const Sides sides = sides_of(scene, edit);
+  const CapturePair pair = capture_pair(scene, edit.node.id, edit.to);
   Report report;
   Affine motion = motion_by_pairs(edit, report).affine();
   if (edit.refine) {
-    SurfaceSamples moved = sampled_surfaces(sides.moved, static_cast<std::size_t>(edit.samples), 1);
-    const SurfaceSamples fixed = sampled_surfaces(sides.fixed, 5 * static_cast<std::size_t>(edit.samples), 2);
+    SurfaceSamples moved = sampled_surfaces(pair.changed, static_cast<std::size_t>(edit.samples), 1);
+    const SurfaceSamples fixed = sampled_surfaces(pair.fixed, 5 * static_cast<std::size_t>(edit.samples), 2);
     for (Vec3& point : moved.points) point = motion * point;
     for (Vec3& normal : moved.normals) normal = (motion.linear() * normal).normalized();
     const IcpResult fit = trimmed_icp(moved, fixed, {edit.scale, edit.overlap}, progress);

@@ -19,7 +19,7 @@ template <class T>
 std::vector<double> values_of(const std::string& bytes, std::size_t at, std::size_t count) {
   static_assert(std::endian::native == std::endian::little);
   std::vector<T> read(count);
-  std::memcpy(read.data(), bytes.data() + at, count * sizeof(T));
+  if (count > 0) std::memcpy(read.data(), bytes.data() + at, count * sizeof(T));
   return {read.begin(), read.end()};
 }
 

@@ -66,7 +66,7 @@ bool write_images(AtomicFolder& out, int k, const FeatureTexture& texels, const 
     const SourceFile* file = source == nullptr ? nullptr : image == 0 ? &source->feat0 : &source->feat1;
     const std::string bytes = file == nullptr ? "" : unchanged_bytes(*origin, *file).value_or("");
     encodes = encodes || bytes.empty();
-    const std::string extension = bytes.empty() ? ".png" : fs::path(file->name).extension().string();
+    const std::string extension = file == nullptr || bytes.empty() ? ".png" : fs::path(file->name).extension().string();
     out.write(fmt::format("feat{}_{}{}", image, k, extension), bytes.empty() ? encoded(texels, image) : bytes);
   }
   return encodes;
