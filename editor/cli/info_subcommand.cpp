@@ -8,6 +8,7 @@
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
 #include "editor/fields/codec.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
@@ -24,6 +25,11 @@ std::size_t chunk_count(const BakedObject& object) {
   return total;
 }
 
+// The color rule as JSON writes it.
+const char* rule_name(ColorRule rule) {
+  return rule == ColorRule::network ? "network" : rule == ColorRule::diffuse ? "diffuse" : "diffuse_and_network";
+}
+
 json object_info(const PlacedNode& placed) {
   const BakedObject& object = *placed.node->object;
   json sizes = json::array();
@@ -32,6 +38,7 @@ json object_info(const PlacedNode& placed) {
   return {{"name", placed.node->name},
           {"visible", placed.visible},
           {"locked", placed.locked},
+          {"format", object.origin ? json(object.origin->format) : json()},
           {"layout", Codec<Layout>::write(object.layout)},
           {"texture_sets", object.sets.size()},
           {"texture_sizes", sizes},
@@ -42,6 +49,7 @@ json object_info(const PlacedNode& placed) {
           {"bounds", {{"min", list(box.min())}, {"max", list(box.max())}}},
           {"axes", Codec<Axes>::write(object.axes)},
           {"decoder", {Decoder::inputs, object.decoder->hidden0(), object.decoder->hidden1(), 3}},
+          {"color_rule", rule_name(object.decoder->rule)},
           {"turned", object.any_rotations()},
           {"assumptions", object.origin ? object.origin->assumptions : std::vector<std::string>()},
           {"memory", object.memory()}};
@@ -87,14 +95,32 @@ json scene_info(const Scene& scene) {
   return out;
 }
 
+// What the files of an object are: format, or layout of a MobileNeRF folder.
+std::string format_words(const json& object) {
+  const json& format = object.at("format");
+  if (format.is_null() || format == "mobilenerf") return object.at("layout").get<std::string>();
+  for (const Format& known : formats())
+    if (format == known.name) return known.title;
+  return format.get<std::string>() + " file";
+}
+
+// How colours follow from texels.
+std::string decoder_words(const json& object) {
+  const json& d = object.at("decoder");
+  if (object.at("color_rule") == "diffuse") return "none: texels hold colours";
+  if (object.at("color_rule") == "diffuse_and_network")
+    return fmt::format("6-{}-3, added to a diffuse colour", d[2].get<int>());
+  return fmt::format("{}-{}-{}-{}", d[0].get<int>(), d[1].get<int>(), d[2].get<int>(), d[3].get<int>());
+}
+
 std::string megabytes(double bytes) { return fmt::format("{:.1f} MB", bytes / 1e6); }
 
 void print(const json& info) {
   for (const json& o : info.at("objects")) {
     const json &low = o.at("bounds").at("min"), &high = o.at("bounds").at("max");
     fmt::print("{}{}\n", printable(o.at("name").get<std::string>()), o.at("visible").get<bool>() ? "" : "  (hidden)");
-    fmt::print("  layout         {}, {} texture set(s), {} geometry file(s)\n", o.at("layout").get<std::string>(),
-               o.at("texture_sets").get<std::size_t>(), o.at("chunks").get<std::size_t>());
+    fmt::print("  layout         {}, {} texture set(s){}\n", format_words(o), o.at("texture_sets").get<std::size_t>(),
+               o.at("chunks").get<std::size_t>());
     fmt::print("  geometry       {} vertices, {} triangles\n", o.at("vertices").get<std::size_t>(),
                o.at("triangles").get<std::size_t>());
     std::string sizes;
@@ -105,8 +131,7 @@ void print(const json& info) {
                low[1].get<double>(), low[2].get<double>(), high[0].get<double>(), high[1].get<double>(),
                high[2].get<double>());
     fmt::print("  axes           {}\n", o.at("axes").get<std::string>());
-    const json& d = o.at("decoder");
-    fmt::print("  decoder        {}-{}-{}-{}\n", d[0].get<int>(), d[1].get<int>(), d[2].get<int>(), d[3].get<int>());
+    fmt::print("  decoder        {}\n", decoder_words(o));
     fmt::print("  memory         {}\n", megabytes(o.at("memory").get<double>()));
   }
   if (info.at("objects").size() > 1)

@@ -82,23 +82,23 @@ std::string read_model_bytes(const std::string& path) {
 void say(const TransferModel& model) {
   fmt::print("poses       {} of {}\n", model.poses, model.poses_from);
   fmt::print("range       up to {:.3g} from the mean pose, {} dimensions; trusted up to {:.1f} times that\n",
-             model.learnt.space.largest * model.learnt.space.size, model.learnt.space.dimensions(),
-             LearntTransfer::trusted_range);
+             model.learned.space.largest * model.learned.space.size, model.learned.space.dimensions(),
+             LearnedTransfer::trusted_range);
   if (model.net)
     fmt::print(
         "error       {:.1f} % of transfer, on held-out poses (rotation alone: {:.1f}; linear: "
         "{:.1f})\n",
-        100 * model.net_error, 100 * model.turning_error, 100 * model.learnt.held_back_error);
+        100 * model.net_error, 100 * model.turning_error, 100 * model.learned.held_back_error);
   else
-    fmt::print("error       {:.1f} % of transfer, on held-out poses{}\n", 100 * model.learnt.held_back_error,
+    fmt::print("error       {:.1f} % of transfer, on held-out poses{}\n", 100 * model.learned.held_back_error,
                model.turning_error > 0 ? fmt::format(" (rotation alone: {:.1f})", 100 * model.turning_error) : "");
   if (model.net)
     fmt::print("network     U-Net with {} channels on a {}² image\n", model.net->state().channels,
                model.net->state().side);
   fmt::print("size        {} of {} sites, {:.1f} MB\n", model.keys.size(), model.sites,
-             static_cast<double>(model.learnt.memory() + (model.net ? model.net->memory() : 0)) / 1e6);
+             static_cast<double>(model.learned.memory() + (model.net ? model.net->memory() : 0)) / 1e6);
   fmt::print("time        {:.1f} s tracing with {} rays, {:.1f} s training\n", model.tracing_seconds, model.rays,
-             model.learnt.seconds + (model.net ? model.net->seconds() : 0));
+             model.learned.seconds + (model.net ? model.net->seconds() : 0));
 }
 
 // Drag light of a node: the start from which TransferModel learns. Throws Error if the node has none.

@@ -66,7 +66,7 @@ inline constexpr Study study_table[] = {
     {"rotation", "local rotations, against exact gradients and SVD", study_rotation},
     {"wrap", "coarseness of the wrap around opaque triangles", study_wrap},
     {"fuse", "one decoder fitted to several: method, width, bits per feature", study_fuse},
-    {"transfer", "radiance transfer of a deformed body: rotated, learnt, traced", study_transfer},
+    {"transfer", "radiance transfer of a deformed body: rotated, learned, traced", study_transfer},
     {"light", "estimation of baked light, by views and albedos", study_light},
     {"slim", "removal of invisible triangles, and fewer bits per feature: size, image error, frame time", study_slim},
     {"masks", "selection by masks: photographs and wrong pixels", study_masks},

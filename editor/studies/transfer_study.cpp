@@ -5,7 +5,7 @@
 
 #include "editor/studies/posed_body.h"
 #include "editor/studies/study.h"
-#include "mesh_ops/light/learned/learnt_transfer.h"
+#include "mesh_ops/light/learned/learned_transfer.h"
 #include "mesh_ops/light/learned/unet_transfer.h"
 #include "mesh_ops/light/relight/cached_light.h"
 #include "mesh_ops/light/transport/rotated_product.h"
@@ -126,14 +126,14 @@ void study_body(const StudyInput& input, const PosedBody& body, StudyTable& tabl
                   [&](const TestPose&) { lit(rest.transfer.sites, nullptr); }, every_pose / training_poses});
   ways.push_back({"rotated", [&](const TestPose& t) { return turned(rest.transfer.sites, t.truth.turns); },
                   [&](const TestPose& t) { lit(rest.transfer.sites, &t.truth.turns); }, every_pose / training_poses});
-  std::vector<LearntTransfer> models;
+  std::vector<LearnedTransfer> models;
   models.reserve(3);
   for (const auto& [name, way] : {std::pair{"linear", TransferMethod::linear},
                                   {"rotated + linear", TransferMethod::rotated_linear},
                                   {"rotated + kernel", TransferMethod::rotated_kernel}}) {
     input.progress.at(name, 0.5);
-    models.push_back(LearntTransfer::learnt(training, {.way = way}));
-    const LearntTransfer* model = &models.back();
+    models.push_back(LearnedTransfer::learned(training, {.way = way}));
+    const LearnedTransfer* model = &models.back();
     const bool turns = way != TransferMethod::linear;
     const auto local = [model](const TestPose& t) {
       return unpacked(model->predict(model->space.place(model->probes_in(t.mesh.vertices))));
@@ -146,7 +146,7 @@ void study_body(const StudyInput& input, const PosedBody& body, StudyTable& tabl
   nets.reserve(2);
   for (const int channels : {8, 16}) {
     if (!images) break;
-    nets.push_back(images->learnt({.channels = channels}, input.progress));
+    nets.push_back(images->learned({.channels = channels}, input.progress));
     const UnetTransfer* net = &nets.back();
     const auto local = [net, &body](const TestPose& t) {
       return unpacked(net->predict(vertex_sites(body.rest, t.mesh, t.truth.turns)));
@@ -162,15 +162,15 @@ void study_body(const StudyInput& input, const PosedBody& body, StudyTable& tabl
   }
   // As the program does it: outside the model's trusted range, only rotate the transfer at rest.
   {
-    const LearntTransfer* model = &models[1];
+    const LearnedTransfer* model = &models[1];
     const auto inside = [model](const TestPose& t) {
-      return model->space.place(model->probes_in(t.mesh.vertices)).range <= LearntTransfer::trusted_range;
+      return model->space.place(model->probes_in(t.mesh.vertices)).range <= LearnedTransfer::trusted_range;
     };
-    const Way along = ways[1], learnt = ways[3];
+    const Way along = ways[1], learned = ways[3];
     ways.push_back({"rotated + linear within its range",
-                    [=](const TestPose& t) { return inside(t) ? learnt.transfer(t) : along.transfer(t); },
-                    [=](const TestPose& t) { inside(t) ? learnt.light(t) : along.light(t); }, learnt.bytes,
-                    learnt.tracing_seconds, learnt.learning_seconds});
+                    [=](const TestPose& t) { return inside(t) ? learned.transfer(t) : along.transfer(t); },
+                    [=](const TestPose& t) { inside(t) ? learned.light(t) : along.light(t); }, learned.bytes,
+                    learned.tracing_seconds, learned.learning_seconds});
   }
   measure(input, body, ways, tests, every_pose, table);
 }

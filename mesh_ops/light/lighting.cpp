@@ -309,7 +309,7 @@ std::optional<Lighting> dragged_lighting(const Scene& start_scene, const Lightin
     const double seconds = seconds_since(began);
     std::string why = "preview: rotated with the moving triangles";
     if (const std::optional<double> range = turning->second->range_of(*b.node->object); range) {
-      if (*range <= LearntTransfer::trusted_range)
+      if (*range <= LearnedTransfer::trusted_range)
         why += ", corrected by the trained model";
       else
         why += fmt::format("; trained model not used: the pose is at {:.1f} times the range of its training poses",

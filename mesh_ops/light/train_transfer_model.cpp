@@ -12,7 +12,7 @@ namespace {
 
 constexpr int image_side = 64;
 
-// Every eighth pose is held out, as in LearntTransfer::learnt().
+// Every eighth pose is held out, as in LearnedTransfer::learned().
 bool held_back(int pose) { return pose % 8 == 7; }
 
 double relative(double squared_error, double squares) { return squares > 0 ? std::sqrt(squared_error / squares) : 0; }
@@ -106,7 +106,7 @@ TransferModel trained_model(const DragLight& start,
   if (!(seen.largest > least))
     throw Error("nothing moves in the training poses: the edit must move triangles of the object");
   // Kernels would gain nothing (`rebake study transfer`).
-  model.learnt = LearntTransfer::learnt(training, {.way = TransferMethod::rotated_linear}, progress);
+  model.learned = LearnedTransfer::learned(training, {.way = TransferMethod::rotated_linear}, progress);
   double off = 0, turned = 0, all = 0;
   for (int k = 0; k < options.poses; ++k) {
     if (!held_back(k)) continue;
@@ -116,7 +116,7 @@ TransferModel trained_model(const DragLight& start,
   }
   model.turning_error = relative(turned, all);
   if (!images) return model;
-  model.net = images->learnt(*options.net, progress);
+  model.net = images->learned(*options.net, progress);
   for (const Held& one : held) {
     const Eigen::VectorXf truth = training.local.row(one.pose).transpose();
     off += static_cast<double>((model.net->predict(one.sites) - truth).squaredNorm());

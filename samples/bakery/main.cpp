@@ -66,7 +66,8 @@ double make(const Model& model, const std::filesystem::path& out, const BakeOpti
 int main(int argc, char** argv) {
   constexpr const char* usage =
       "Bakes the sample scenes and compares 20 held-out views of each with ray-traced ground truth.\n"
-      "Usage: rebake_bakery -o FOLDER [--epochs N] [--pictures FOLDER] [ficus] [kettle] [courtyard] [shelf]\n"
+      "Usage: rebake_bakery -o FOLDER [--epochs N] [--pictures FOLDER] [ficus] [kettle] [courtyard] [shelf] "
+      "[shelf_without_vase]\n"
       "  -o, --out FOLDER    folder for the baked scenes\n"
       "  --epochs N          training epochs (default 40)\n"
       "  --pictures FOLDER   also write some held-out views there: ground truth and baked\n"
@@ -102,10 +103,10 @@ int main(int argc, char** argv) {
   const std::vector<std::string> names(argv + optind, argv + argc);
   if (out.empty()) return refuse("--out FOLDER is required");
   try {
-    const std::vector<Model> models{ficus(), kettle(), courtyard(), shelf()};
+    const std::vector<Model> models{ficus(), kettle(), courtyard(), shelf(), shelf(false)};
     for (const std::string& name : names)
       if (std::none_of(models.begin(), models.end(), [&](const Model& model) { return model.name == name; }))
-        return refuse("\"" + name + "\" is not a sample (ficus, kettle, courtyard, shelf)");
+        return refuse("\"" + name + "\" is not a sample (ficus, kettle, courtyard, shelf, shelf_without_vase)");
     if (!pictures.empty()) std::filesystem::create_directories(pictures);
     double sum = 0;
     int count = 0;

@@ -9,9 +9,9 @@ namespace rebake::bakery {
 
 using std::numbers::pi;
 
-Model shelf() {
+Model shelf(bool with_vase) {
   Model m;
-  m.name = "shelf";
+  m.name = with_vase ? "shelf" : "shelf_without_vase";
   m.axes = Axes::forward;
   const auto wood = [](double, double, const Vec3& p) -> Vec3 {
     return Vec3(0.42, 0.26, 0.13) * (0.7 + 0.5 * noise(Vec3(p.x() * 2, p.y() * 22, p.z() * 6)));
@@ -62,7 +62,7 @@ Model shelf() {
              }};
   vase.reflectance = 0.06;
   vase.sharpness = 12;
-  m.patches.push_back(vase);
+  if (with_vase) m.patches.push_back(vase);
   m.sun = {-0.35, 0.7, 0.9};
   m.camera = [](double s, double t) {
     Camera camera;

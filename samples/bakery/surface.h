@@ -55,6 +55,7 @@ Model warped(const Model& model, const std::function<Vec3(std::size_t patch, con
 Model ficus();
 Model kettle();
 Model courtyard();
-Model shelf();
+/// The shelf with or without its vase, as "shelf" or "shelf_without_vase": the truth for its removal.
+Model shelf(bool with_vase = true);
 
 }  // namespace rebake::bakery

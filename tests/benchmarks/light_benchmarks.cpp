@@ -156,7 +156,7 @@ void DraggedBranch(benchmark::State& state) {
 }
 BENCHMARK(DraggedBranch)
     ->ArgsProduct({{10, 40, 70}, {0, 1}})
-    ->ArgNames({"degrees", "learnt"})
+    ->ArgNames({"degrees", "learned"})
     ->Unit(benchmark::kMillisecond);
 
 // Frame time of a drag in the window with moving vertices. Argument 0: without light, 1: with constant light maps, 2:

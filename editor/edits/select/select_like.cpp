@@ -2,8 +2,8 @@
 
 #include "editor/edits/describe_edit.h"
 #include "mesh_ops/index/index.h"
-#include "mesh_ops/select/likeness.h"
 #include "mesh_ops/select/morphology.h"
+#include "mesh_ops/select/triangle_appearance.h"
 
 namespace rebake {
 
@@ -28,7 +28,7 @@ Scene apply(const Scene& scene, const SelectLike& edit) {
     objects_with_selection(scene, edit.node);
     for (const PlacedNode& placed : targets) picked.push_back(selection_of(placed));
   }
-  const Likeness model = mean_likeness(targets, picked);
+  const TriangleAppearance model = mean_appearance(targets, picked);
   if (edit.orientation && !(model.area > 0))
     throw FieldError("orientation", "the reference triangles have no area, so no orientation");
   std::size_t k = 0;

@@ -12,7 +12,7 @@ struct SelectLike {
   static constexpr AdjustableField adjustable[] = {{"color", "Tolerance", AdjustableField::Kind::factor}};
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   std::optional<Vec3> point;    ///< in world space; nothing: the present selection is the reference
-  std::optional<double> color, features, opacity, size, orientation;  ///< tolerances, see LikenessBounds
+  std::optional<double> color, features, opacity, size, orientation;  ///< tolerances, see AppearanceBounds
   bool contiguous = false;  ///< only triangles connected to the reference through shared vertices
   SelectMode mode = SelectMode::set;
 };

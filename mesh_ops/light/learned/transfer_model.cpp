@@ -52,21 +52,21 @@ struct Sizes {
 // Visits all arrays and numbers of a model whose containers already have their sizes.
 template <class Model, class Visit>
 void visit_numbers(Model& model, Visit& visit) {
-  auto& learnt = model.learnt;
+  auto& learned = model.learned;
   const auto matrix = [&](auto& m) { visit(m.data(), static_cast<std::size_t>(m.size())); };
   visit(model.keys.data(), model.keys.size());
   visit(model.facing.data(), model.facing.size());
-  visit(learnt.probes.data(), learnt.probes.size());
-  for (auto& p : learnt.space.rest) visit(p.data(), 3);
-  visit(&learnt.space.size, 1);
-  visit(&learnt.space.farthest, 1);
-  visit(&learnt.space.largest, 1);
-  matrix(learnt.space.mean);
-  matrix(learnt.space.axes);
-  matrix(learnt.space.deviations);
-  matrix(learnt.mean);
-  matrix(learnt.components);
-  matrix(learnt.linear);
+  visit(learned.probes.data(), learned.probes.size());
+  for (auto& p : learned.space.rest) visit(p.data(), 3);
+  visit(&learned.space.size, 1);
+  visit(&learned.space.farthest, 1);
+  visit(&learned.space.largest, 1);
+  matrix(learned.space.mean);
+  matrix(learned.space.axes);
+  matrix(learned.space.deviations);
+  matrix(learned.mean);
+  matrix(learned.components);
+  matrix(learned.linear);
 }
 
 template <class State, class Visit>
@@ -84,11 +84,11 @@ void visit_net(State& state, Visit& visit) {
 }  // namespace
 
 Eigen::VectorXf TransferModel::predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there) const {
-  return net ? net->predict(keys_there) : learnt.predict(place);
+  return net ? net->predict(keys_there) : learned.predict(place);
 }
 
 std::string bytes_of(const TransferModel& model) {
-  const LearntTransfer& learnt = model.learnt;
+  const LearnedTransfer& learned = model.learned;
   nlohmann::json head = {{"kind", model.net ? kind_with_net : kind},
                          {"body", fmt::format("{:016x}", model.body)},
                          {"sites", model.sites},
@@ -96,14 +96,14 @@ std::string bytes_of(const TransferModel& model) {
                          {"poses", model.poses},
                          {"rays", model.rays},
                          {"tracing_seconds", model.tracing_seconds},
-                         {"learning_seconds", learnt.seconds},
-                         {"held_back_error", learnt.held_back_error},
+                         {"learning_seconds", learned.seconds},
+                         {"held_back_error", learned.held_back_error},
                          {"turning_error", model.turning_error},
-                         {"largest_displacement", learnt.space.largest * learnt.space.size},
+                         {"largest_displacement", learned.space.largest * learned.space.size},
                          {"keys", model.keys.size()},
-                         {"probes", learnt.probes.size()},
-                         {"dimensions", learnt.space.dimensions()},
-                         {"components", learnt.components.cols()}};
+                         {"probes", learned.probes.size()},
+                         {"dimensions", learned.space.dimensions()},
+                         {"components", learned.components.cols()}};
   if (model.net) {
     const UnetTransfer::State& net = model.net->state();
     head["net"] = {{"side", net.side},
@@ -138,11 +138,11 @@ void read_head(const nlohmann::json& head, std::size_t file_size, TransferModel&
   model.poses = head.at("poses");
   model.rays = head.at("rays");
   model.tracing_seconds = head.at("tracing_seconds");
-  model.learnt.seconds = head.at("learning_seconds");
-  model.learnt.held_back_error = head.at("held_back_error");
+  model.learned.seconds = head.at("learning_seconds");
+  model.learned.held_back_error = head.at("held_back_error");
   // Older files have it for networks only, in the member "net".
   model.turning_error = head.value("turning_error", 0.0);
-  model.learnt.way = TransferMethod::rotated_linear;
+  model.learned.way = TransferMethod::rotated_linear;
   const Sizes n{head.at("keys"), head.at("probes"), head.at("dimensions"), head.at("components")};
   const auto keys = static_cast<double>(n.keys), probes = static_cast<double>(n.probes),
              dimensions = static_cast<double>(n.dimensions), components = static_cast<double>(n.components);
@@ -151,17 +151,17 @@ void read_head(const nlohmann::json& head, std::size_t file_size, TransferModel&
   require_room(file_size, probes * 3 * (dimensions + 1), sizeof(double));
   require_room(file_size, components * (dimensions + 1), sizeof(double));
   const auto index = [](std::uint64_t value) { return static_cast<Eigen::Index>(value); };
-  LearntTransfer& learnt = model.learnt;
+  LearnedTransfer& learned = model.learned;
   model.keys.resize(n.keys);
   model.facing.resize(n.keys);
-  learnt.probes.resize(n.probes);
-  learnt.space.rest.resize(n.probes);
-  learnt.space.mean.resize(index(3 * n.probes));
-  learnt.space.axes.resize(index(n.dimensions), index(3 * n.probes));
-  learnt.space.deviations.resize(index(n.dimensions));
-  learnt.mean.resize(index(n.keys * sh::count));
-  learnt.components.resize(learnt.mean.size(), index(n.components));
-  learnt.linear.resize(index(n.components), index(n.dimensions + 1));
+  learned.probes.resize(n.probes);
+  learned.space.rest.resize(n.probes);
+  learned.space.mean.resize(index(3 * n.probes));
+  learned.space.axes.resize(index(n.dimensions), index(3 * n.probes));
+  learned.space.deviations.resize(index(n.dimensions));
+  learned.mean.resize(index(n.keys * sh::count));
+  learned.components.resize(learned.mean.size(), index(n.components));
+  learned.linear.resize(index(n.components), index(n.dimensions + 1));
 }
 
 // The same for the network. Sizes that depend on the model are those of `model`.
@@ -184,7 +184,7 @@ UnetTransfer::State read_net_head(const nlohmann::json& head, std::size_t file_s
   net.chart.uvs.resize(vertices);
   net.chart.faces.resize(faces);
   net.weights.resize(unet_weight_count(net.channels));
-  net.mean.resize(model.learnt.mean.size());
+  net.mean.resize(model.learned.mean.size());
   return net;
 }
 
@@ -218,7 +218,7 @@ TransferModel transfer_model_of(std::string_view bytes) {
   if (!reader.done()) throw Error("unexpected data after the end of the model");
   for (const std::uint32_t key : model.keys)
     if (key >= model.sites) throw Error("a site index is out of range");
-  for (const std::uint32_t probe : model.learnt.probes)
+  for (const std::uint32_t probe : model.learned.probes)
     if (probe >= model.keys.size()) throw Error("a site index is out of range");
   try {
     if (net) model.net.emplace(std::move(*net));

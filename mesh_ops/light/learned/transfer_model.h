@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh_ops/light/learned/learnt_transfer.h"
+#include "mesh_ops/light/learned/learned_transfer.h"
 #include "mesh_ops/light/learned/unet_transfer.h"
 
 namespace rebake {
@@ -18,12 +18,12 @@ struct TransferModel {
   double tracing_seconds = 0;
   std::vector<std::uint32_t> keys;  ///< site indices
   std::vector<float> facing;        ///< per key: facing_of()
-  LearntTransfer learnt;  ///< linear model of the keys (rotated_linear); gives the trusted range also with a network
-  std::optional<UnetTransfer> net;  ///< predicts instead of `learnt`, if present; its vertices are the keys
+  LearnedTransfer learned;  ///< linear model of the keys (rotated_linear); gives the trusted range also with a network
+  std::optional<UnetTransfer> net;  ///< predicts instead of `learned`, if present; its vertices are the keys
   double net_error = 0;             ///< relative error of the network on the held-out poses
   double turning_error = 0;         ///< the same by rotation alone; 0 if an older file does not contain it
   /// Relative error on the held-out poses.
-  double error() const { return net ? net_error : learnt.held_back_error; }
+  double error() const { return net ? net_error : learned.held_back_error; }
 
   /// 16 coefficients per key in rotated frames. `place`: the pose in pose space; `keys_there`: the key sites in that
   /// pose.

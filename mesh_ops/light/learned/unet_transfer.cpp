@@ -69,7 +69,7 @@ void UnetTransfer::Training::add(const std::vector<LightSite>& sites, const std:
   ++poses_;
 }
 
-UnetTransfer UnetTransfer::Training::learnt(const UnetTraining& options, const Progress& progress) const {
+UnetTransfer UnetTransfer::Training::learned(const UnetTraining& options, const Progress& progress) const {
   const auto start = std::chrono::steady_clock::now();
   const std::size_t texels = image_.texels().size(), own = rest_.vertices.size() * sh::count;
   Eigen::VectorXf mean = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(own));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mesh_ops/light/learned/geometry_image.h"
-#include "mesh_ops/light/learned/learnt_transfer.h"
+#include "mesh_ops/light/learned/learned_transfer.h"
 #include "mesh_ops/light/learned/unet_trainer.h"
 
 namespace rebake {
@@ -11,13 +11,13 @@ namespace rebake {
 /// space; in rotated frames the network need not learn the rotation.
 class UnetTransfer {
  public:
-  /// Training set that is filled pose by pose. learnt() trains a network on it and throws Error without LibTorch.
+  /// Training set that is filled pose by pose. learned() trains a network on it and throws Error without LibTorch.
   class Training {
    public:
     Training(ProxyMesh rest, GeometryImage image);
     void add(const std::vector<LightSite>& sites, const std::vector<Mat3>& turns,
              const std::vector<sh::Coefficients>& transfer);
-    UnetTransfer learnt(const UnetTraining& options, const Progress& progress = {}) const;
+    UnetTransfer learned(const UnetTraining& options, const Progress& progress = {}) const;
 
    private:
     ProxyMesh rest_;

@@ -134,9 +134,9 @@ void DragLight::prepare_model() {
   for (std::size_t s = 0; s < start_.charts.size(); ++s)
     for (const Mat3& turn : node_rotations(body->sets[s], start_.object->sets[s], *start_.charts[s]))
       since_baked_.push_back(turn);
-  const PoseSpace::Place place = model.learnt.space.place(probes_on(*start_.object));
-  if (!(place.range <= LearntTransfer::trusted_range)) return;
-  learnt_ = model.predict(place, keys_of(model, start_.sites.now));
+  const PoseSpace::Place place = model.learned.space.place(probes_on(*start_.object));
+  if (!(place.range <= LearnedTransfer::trusted_range)) return;
+  learned_ = model.predict(place, keys_of(model, start_.sites.now));
   // Interpolation from the nearest four keys with a similar normal and the same visible side.
   const auto shown_normal = [&](std::size_t i, float facing) -> Vec3 {
     return facing == 0.0F ? Vec3(-start_.sites.baked[i].normal) : start_.sites.baked[i].normal;
@@ -178,7 +178,7 @@ void DragLight::prepare_model() {
 std::vector<Vec3> DragLight::probes_on(const BakedObject& object) const {
   std::vector<Vec3> places;
   const std::vector<std::size_t>& first = start_.sites.first;
-  for (const std::uint32_t probe : start_.model->learnt.probes) {
+  for (const std::uint32_t probe : start_.model->learned.probes) {
     const std::size_t site = start_.model->keys[probe];
     const auto set = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), site) - first.begin()) - 1;
     places.push_back(place_of(object, set, site - first[set]));
@@ -188,20 +188,20 @@ std::vector<Vec3> DragLight::probes_on(const BakedObject& object) const {
 
 std::optional<double> DragLight::range_of(const BakedObject& object) const {
   if (shares_.empty()) return std::nullopt;
-  return start_.model->learnt.space.place(probes_on(object)).range;
+  return start_.model->learned.space.place(probes_on(object)).range;
 }
 
 // Adds the change that the model predicts beyond rotation, if the pose is within the trusted range.
-void DragLight::add_learnt(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
-                           const std::vector<LightSite>& sites, std::vector<Radiance>& light) const {
+void DragLight::add_learned(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
+                            const std::vector<LightSite>& sites, std::vector<Radiance>& light) const {
   if (shares_.empty()) return;
-  const PoseSpace::Place place = start_.model->learnt.space.place(probes_on(object));
+  const PoseSpace::Place place = start_.model->learned.space.place(probes_on(object));
   // The prediction fades out towards the end of the range, so that nothing jumps.
   constexpr double fades = 0.5;
-  const double share = std::min(1.0, (LearntTransfer::trusted_range - place.range) / fades);
+  const double share = std::min(1.0, (LearnedTransfer::trusted_range - place.range) / fades);
   if (!(share > 0)) return;
   const Eigen::VectorXf change =
-      static_cast<float>(share) * (start_.model->predict(place, keys_of(*start_.model, sites)) - learnt_);
+      static_cast<float>(share) * (start_.model->predict(place, keys_of(*start_.model, sites)) - learned_);
   for (std::size_t s = 0; s < turns.size(); ++s)
     tbb::parallel_for(std::size_t{0}, turns[s].size(), [&](std::size_t k) {
       const std::size_t i = start_.sites.first[s] + k;
@@ -250,7 +250,7 @@ std::vector<Radiance> DragLight::light_on(const BakedObject& object, const std::
       if (!turn.isIdentity(0)) change += products_[start_.sites.body[i]](turn, start_.transfer[i]) - unrotated_[i];
       light[i] = start_.after[i] + change;
     });
-  add_learnt(object, turns, sites, light);
+  add_learned(object, turns, sites, light);
   for (Radiance& one : light) one = one.cwiseMax(0.0);
   return light;
 }

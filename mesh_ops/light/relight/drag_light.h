@@ -62,8 +62,8 @@ class DragLight {
   std::vector<Radiance> suns_on(const BakedObject& object, const std::vector<LightSite>& sites) const;
   void prepare_model();
   std::vector<Vec3> probes_on(const BakedObject& object) const;
-  void add_learnt(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
-                  const std::vector<LightSite>& sites, std::vector<Radiance>& light) const;
+  void add_learned(const BakedObject& object, const std::vector<std::vector<Mat3>>& turns,
+                   const std::vector<LightSite>& sites, std::vector<Radiance>& light) const;
 
   Start start_;
   /// Interpolation of a site from four keys of the model; weights sum to 1, or are all 0.
@@ -73,7 +73,7 @@ class DragLight {
   };
   std::vector<Share> shares_;                 ///< per site; empty without a model
   std::vector<Mat3> since_baked_;             ///< per site: rotation since baking
-  Eigen::VectorXf learnt_;                    ///< prediction of the model at the start
+  Eigen::VectorXf learned_;                   ///< prediction of the model at the start
   std::vector<RotatedProduct> products_;      ///< per body
   std::vector<Radiance> unrotated_, sunlit_;  ///< per site, at the start: irradiance / π by the sky and by the suns
 };

@@ -96,7 +96,7 @@ TEST(LightEdit, UsesModelsWithinTheirRange) {
   EXPECT_LT(model.error(), 0.8 * model.turning_error) << "the model must be better than rotation";
   const std::string bytes = bytes_of(model);
   store.keep(transfer_model_key(*rest.roots.front()->object, model.sites), bytes);
-  const auto learnt = turning_now(rest);
+  const auto learned = turning_now(rest);
   const Scene moved = lifted(0.31);
   const std::vector<Radiance> truth = turning_now(moved)->start().after;
   const auto off = [&](const DragLight& turning) {
@@ -105,8 +105,8 @@ TEST(LightEdit, UsesModelsWithinTheirRange) {
     for (std::size_t i = 0; i < truth.size(); ++i) sum += (light[i] - truth[i]).squaredNorm();
     return std::sqrt(sum);
   };
-  EXPECT_LT(off(*learnt), 0.45 * off(*plain));
-  EXPECT_EQ(learnt->light_on(*rest.roots.front()->object), learnt->start().after) << "nothing jumps";
+  EXPECT_LT(off(*learned), 0.45 * off(*plain));
+  EXPECT_EQ(learned->light_on(*rest.roots.front()->object), learned->start().after) << "nothing jumps";
   const auto why = [&](const Scene& scene) {
     const auto lighting = dragged_lighting(rest, lighting_of(rest, options), scene);
     return lighting->decisions.back().why;
@@ -114,7 +114,7 @@ TEST(LightEdit, UsesModelsWithinTheirRange) {
   EXPECT_NE(why(moved).find("corrected by the trained model"), std::string::npos) << why(moved);
   const Scene far = lifted(5);
   EXPECT_NE(why(far).find("trained model not used: the pose is at"), std::string::npos) << why(far);
-  EXPECT_EQ(learnt->light_on(*far.roots.front()->object), plain->light_on(*far.roots.front()->object));
+  EXPECT_EQ(learned->light_on(*far.roots.front()->object), plain->light_on(*far.roots.front()->object));
 
   // Models round-trip through bytes; damaged or foreign bytes are rejected.
   const TransferModel read = transfer_model_of(bytes);
@@ -166,12 +166,12 @@ TEST(LightEdit, TrainsAUnetOnPoses) {
   for (std::size_t size = 0; size < bytes.size(); size += bytes.size() / 7)
     EXPECT_THROW(transfer_model_of(std::string_view(bytes).substr(0, size)), Error);
   store.keep(transfer_model_key(*rest.roots.front()->object, model.sites), bytes);
-  const auto learnt = turning_now(rest);
-  ASSERT_TRUE(learnt->start().model);
-  EXPECT_EQ(learnt->light_on(*rest.roots.front()->object), learnt->start().after) << "nothing jumps";
+  const auto learned = turning_now(rest);
+  ASSERT_TRUE(learned->start().model);
+  EXPECT_EQ(learned->light_on(*rest.roots.front()->object), learned->start().after) << "nothing jumps";
   const Scene moved = bent(20), far = bent(170);
-  EXPECT_NE(learnt->light_on(*moved.roots.front()->object), plain->light_on(*moved.roots.front()->object));
-  EXPECT_EQ(learnt->light_on(*far.roots.front()->object), plain->light_on(*far.roots.front()->object))
+  EXPECT_NE(learned->light_on(*moved.roots.front()->object), plain->light_on(*moved.roots.front()->object));
+  EXPECT_EQ(learned->light_on(*far.roots.front()->object), plain->light_on(*far.roots.front()->object))
       << "outside its range the model must not be used";
 }
 

@@ -4,9 +4,9 @@
 #include <random>
 
 #include "mesh_ops/index/traits.h"
-#include "mesh_ops/select/likeness.h"
 #include "mesh_ops/select/picture.h"
 #include "mesh_ops/select/regions.h"
+#include "mesh_ops/select/triangle_appearance.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -121,7 +121,7 @@ TEST(SelectionProperty, ATriangleIsLikeItself) {
     node.selection = std::make_shared<const TriangleSet>(TriangleSet{1});
     const Scene scene = with_added({}, node, NodeId::none, 0);
     const std::vector<PlacedNode> placed = placed_nodes(scene);
-    const Likeness model = mean_likeness(placed, {TriangleSet{1}});
+    const TriangleAppearance model = mean_appearance(placed, {TriangleSet{1}});
     for (const double degrees : {0.0, 1e-9, 1.0, 90.0})
       EXPECT_EQ(count(triangles_like(placed[0], model, {{}, {}, {}, {}, degrees})), 1U) << degrees;
   }

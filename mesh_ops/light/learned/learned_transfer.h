@@ -11,7 +11,7 @@
 namespace rebake {
 
 /// Method of predicting transfer from a pose. All but `linear` predict transfer in frames that rotate with the surface,
-/// so that rotation need not be learnt.
+/// so that rotation need not be learned.
 enum class TransferMethod {
   linear,  ///< coefficients in the body's space are linear in the pose (as in precomputed transfer for morphable
            ///< models, MoMoPRT)
@@ -38,7 +38,7 @@ struct TransferTraining {
 };
 
 /// A trained model of a body's transfer as a function of its pose.
-class LearntTransfer {
+class LearnedTransfer {
  public:
   struct Options {
     TransferMethod way = TransferMethod::rotated_kernel;
@@ -46,7 +46,8 @@ class LearntTransfer {
   };
   /// Principal components over the poses, with weights by ridge regression; an eighth of the poses is held out to
   /// select the regularisation. Throws Error for fewer than 8 poses.
-  static LearntTransfer learnt(const TransferTraining& training, const Options& options, const Progress& progress = {});
+  static LearnedTransfer learned(const TransferTraining& training, const Options& options,
+                                 const Progress& progress = {});
 
   /// 16 coefficients per site: in rotated frames, or with `linear` in the body's space.
   Eigen::VectorXf predict(const PoseSpace::Place& place) const;

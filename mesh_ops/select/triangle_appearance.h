@@ -8,7 +8,7 @@
 namespace rebake {
 
 /// Mean appearance and shape of triangles, in world space.
-struct Likeness {
+struct TriangleAppearance {
   Vec3 color = Vec3::Zero();  ///< decoded display colour, 0 … 1 per channel
   Eigen::Array<double, 8, 1> features = Eigen::Array<double, 8, 1>::Zero();  ///< decoded features, 0 … 1
   double opacity = 0;                                                        ///< share of opaque texels, 0 … 1
@@ -18,10 +18,10 @@ struct Likeness {
 
 /// Mean over the flagged triangles of placed objects. `picked`: flags per object; at least one triangle must be
 /// flagged.
-Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector<TriangleSet>& picked);
+TriangleAppearance mean_appearance(const std::vector<PlacedNode>& objects, const std::vector<TriangleSet>& picked);
 
-/// Largest differences from a Likeness; bounds without a value are ignored.
-struct LikenessBounds {
+/// Largest differences from a TriangleAppearance; bounds without a value are ignored.
+struct AppearanceBounds {
   std::optional<double> color;        ///< distance of mean decoded colours in RGB, 0 … 1 per channel
   std::optional<double> features;     ///< root mean square difference of mean features
   std::optional<double> opacity;      ///< difference of the shares of opaque texels
@@ -30,6 +30,6 @@ struct LikenessBounds {
 };
 
 /// Triangles within all bounds. Fully transparent triangles match no bound on colour or features.
-TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, const LikenessBounds& bounds);
+TriangleSet triangles_like(const PlacedNode& placed, const TriangleAppearance& model, const AppearanceBounds& bounds);
 
 }  // namespace rebake

@@ -1,4 +1,4 @@
-#include "mesh_ops/light/learned/learnt_transfer.h"
+#include "mesh_ops/light/learned/learned_transfer.h"
 
 #include <tbb/parallel_for.h>
 
@@ -71,8 +71,9 @@ namespace {
 
 // Adds Gaussian kernels to a linear model if they reduce `least`, the error on the held-out poses. Columns of
 // `coordinates` and `scores` are poses; `share`: regularisation of the linear model.
-void add_kernels(LearntTransfer& model, const Eigen::MatrixXd& coordinates, const Eigen::MatrixXd& scores, double share,
-                 const std::vector<Eigen::Index>& kept, const std::vector<Eigen::Index>& held, double& least) {
+void add_kernels(LearnedTransfer& model, const Eigen::MatrixXd& coordinates, const Eigen::MatrixXd& scores,
+                 double share, const std::vector<Eigen::Index>& kept, const std::vector<Eigen::Index>& held,
+                 double& least) {
   const Eigen::MatrixXd inputs = with_one(coordinates);
   const Eigen::MatrixXd kept_inputs = inputs(Eigen::all, kept), held_inputs = inputs(Eigen::all, held),
                         kept_scores = scores(Eigen::all, kept), held_scores = scores(Eigen::all, held);
@@ -104,13 +105,13 @@ void add_kernels(LearntTransfer& model, const Eigen::MatrixXd& coordinates, cons
 
 }  // namespace
 
-LearntTransfer LearntTransfer::learnt(const TransferTraining& training, const Options& options,
-                                      const Progress& progress) {
+LearnedTransfer LearnedTransfer::learned(const TransferTraining& training, const Options& options,
+                                         const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const Eigen::MatrixXf& rows = options.way == TransferMethod::linear ? training.plain : training.local;
   const Eigen::Index poses = rows.rows();
   if (poses < 8) throw Error("too few poses: training needs at least 8");
-  LearntTransfer model;
+  LearnedTransfer model;
   model.way = options.way;
   model.probes = training.probes;
   model.space = PoseSpace(training.rest_probes, training.posed_probes);
@@ -166,7 +167,7 @@ LearntTransfer LearntTransfer::learnt(const TransferTraining& training, const Op
   return model;
 }
 
-Eigen::VectorXf LearntTransfer::predict(const PoseSpace::Place& place) const {
+Eigen::VectorXf LearnedTransfer::predict(const PoseSpace::Place& place) const {
   Eigen::VectorXd inputs(place.coordinates.size() + 1);
   inputs << 1, place.coordinates;
   Eigen::VectorXd weights = linear * inputs;
@@ -181,9 +182,9 @@ Eigen::VectorXf LearntTransfer::predict(const PoseSpace::Place& place) const {
   return result;
 }
 
-std::vector<Vec3> LearntTransfer::probes_in(const std::vector<Vec3>& places) const { return picked(places, probes); }
+std::vector<Vec3> LearnedTransfer::probes_in(const std::vector<Vec3>& places) const { return picked(places, probes); }
 
-std::uint64_t LearntTransfer::memory() const {
+std::uint64_t LearnedTransfer::memory() const {
   return static_cast<std::uint64_t>(mean.size() + components.size()) * sizeof(float) +
          static_cast<std::uint64_t>(linear.size() + centers.size() + kernel.size() + space.axes.size()) *
              sizeof(double);

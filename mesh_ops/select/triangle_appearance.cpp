@@ -1,4 +1,4 @@
-#include "mesh_ops/select/likeness.h"
+#include "mesh_ops/select/triangle_appearance.h"
 
 #include <tbb/parallel_for.h>
 
@@ -35,8 +35,8 @@ class WorldShape {
 
 }  // namespace
 
-Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector<TriangleSet>& picked) {
-  Likeness mean;
+TriangleAppearance mean_appearance(const std::vector<PlacedNode>& objects, const std::vector<TriangleSet>& picked) {
+  TriangleAppearance mean;
   double total = 0, opaque = 0;
   // The sign of normals is ignored: the mean axis is the eigenvector with the largest eigenvalue of the sum of their
   // outer products.
@@ -70,7 +70,7 @@ Likeness mean_likeness(const std::vector<PlacedNode>& objects, const std::vector
   return mean;
 }
 
-TriangleSet triangles_like(const PlacedNode& placed, const Likeness& model, const LikenessBounds& bounds) {
+TriangleSet triangles_like(const PlacedNode& placed, const TriangleAppearance& model, const AppearanceBounds& bounds) {
   // Sines are exact for equal planes, up to the rounding of the normals, which are floats.
   constexpr double rounding = 4.0 * std::numeric_limits<float>::epsilon();
   const double max_sine = bounds.orientation && *bounds.orientation < 90

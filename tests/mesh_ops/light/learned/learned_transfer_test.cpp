@@ -1,5 +1,5 @@
-// Learnt transfer: pose spaces and their range, fitted models, disk charts, geometry images, and the U-Net.
-#include "mesh_ops/light/learned/learnt_transfer.h"
+// Learned transfer: pose spaces and their range, fitted models, disk charts, geometry images, and the U-Net.
+#include "mesh_ops/light/learned/learned_transfer.h"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ TransferTraining some_poses(int count, bool bent = false) {
   return training;
 }
 
-double error_at(const LearntTransfer& model, double a, double b, bool bent = false) {
+double error_at(const LearnedTransfer& model, double a, double b, bool bent = false) {
   const ProxyMesh rest = flat(), posed = curved(a, b);
   const auto turns = vertex_rotations(rest, posed);
   const auto sites = vertex_sites(rest, posed, turns);
@@ -75,7 +75,7 @@ double error_at(const LearntTransfer& model, double a, double b, bool bent = fal
   return std::sqrt(off / all);
 }
 
-TEST(LearntTransfer, ProbesLieFarApart) {
+TEST(LearnedTransfer, ProbesLieFarApart) {
   const ProxyMesh mesh = flat();
   const auto probes = PoseSpace::probes_of(mesh.vertices, 4);
   ASSERT_EQ(probes.size(), 4U);
@@ -86,8 +86,8 @@ TEST(LearntTransfer, ProbesLieFarApart) {
   EXPECT_TRUE(PoseSpace::probes_of({}, 5).empty());
 }
 
-TEST(LearntTransfer, MeasuresDistanceFromTrainingPoses) {
-  const LearntTransfer model = LearntTransfer::learnt(some_poses(40), {});
+TEST(LearnedTransfer, MeasuresDistanceFromTrainingPoses) {
+  const LearnedTransfer model = LearnedTransfer::learned(some_poses(40), {});
   EXPECT_EQ(model.space.dimensions(), 2) << "the poses have two parameters";
   const auto range = [&](const ProxyMesh& posed) { return model.space.place(model.probes_in(posed.vertices)).range; };
   EXPECT_LE(range(curved(0.2, -0.1)), 1);
@@ -96,26 +96,26 @@ TEST(LearntTransfer, MeasuresDistanceFromTrainingPoses) {
       << "a pose of another kind";
 }
 
-TEST(LearntTransfer, FitsLinearAndNonlinearTransfer) {
+TEST(LearnedTransfer, FitsLinearAndNonlinearTransfer) {
   const TransferTraining linear = some_poses(60), bent = some_poses(200, true);
   const double unchanged = [&] {
-    LearntTransfer model = LearntTransfer::learnt(linear, {.way = TransferMethod::linear});
+    LearnedTransfer model = LearnedTransfer::learned(linear, {.way = TransferMethod::linear});
     model.linear.setZero();
     return error_at(model, 0.25, -0.2);
   }();
-  const LearntTransfer plain = LearntTransfer::learnt(linear, {.way = TransferMethod::linear}),
-                       turned = LearntTransfer::learnt(linear, {.way = TransferMethod::rotated_linear});
+  const LearnedTransfer plain = LearnedTransfer::learned(linear, {.way = TransferMethod::linear}),
+                        turned = LearnedTransfer::learned(linear, {.way = TransferMethod::rotated_linear});
   EXPECT_LT(error_at(plain, 0.25, -0.2), 0.3 * unchanged);
   EXPECT_LT(error_at(turned, 0.25, -0.2), 0.1 * error_at(plain, 0.25, -0.2)) << "rotation is not linear";
   EXPECT_LT(error_at(turned, 0.25, -0.2), 2e-3);
   EXPECT_LT(turned.held_back_error, 2e-3);
-  const LearntTransfer line = LearntTransfer::learnt(bent, {.way = TransferMethod::rotated_linear}),
-                       kernel = LearntTransfer::learnt(bent, {.way = TransferMethod::rotated_kernel});
+  const LearnedTransfer line = LearnedTransfer::learned(bent, {.way = TransferMethod::rotated_linear}),
+                        kernel = LearnedTransfer::learned(bent, {.way = TransferMethod::rotated_kernel});
   EXPECT_LT(error_at(kernel, 0.2, 0.1, true), 0.2 * error_at(line, 0.2, 0.1, true));
-  EXPECT_THROW(LearntTransfer::learnt(some_poses(7), {}), Error);
+  EXPECT_THROW(LearnedTransfer::learned(some_poses(7), {}), Error);
 }
 
-TEST(LearntTransfer, SurvivesDegenerateBodies) {
+TEST(LearnedTransfer, SurvivesDegenerateBodies) {
   // Poses without any motion, vertices without triangles, slivers.
   ProxyMesh rest{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {5, 5, 5}}, {{0, 1, 2}}};
   const auto turns = vertex_rotations(rest, rest);
@@ -124,7 +124,7 @@ TEST(LearntTransfer, SurvivesDegenerateBodies) {
   TransferTraining training(rest.vertices, 8, TransferTraining::Frames::turned);
   for (std::size_t k = 0; k < 8; ++k)
     training.set(k, rest.vertices, turns, std::vector<sh::Coefficients>(4, sh::Coefficients::Zero()));
-  const LearntTransfer model = LearntTransfer::learnt(training, {});
+  const LearnedTransfer model = LearnedTransfer::learned(training, {});
   const auto place = model.space.place(model.probes_in(rest.vertices));
   EXPECT_EQ(place.range, 0);
   EXPECT_TRUE(model.predict(place).isZero(0));
@@ -318,7 +318,7 @@ TEST(Unet, TrainsWithLibTorch) {
     poses.push_back({sites, turns, known(sites, 4 * a, 0)});
     training.add(sites, turns, poses.back().truth);
   }
-  const UnetTransfer model = training.learnt({.channels = 8, .epochs = 120, .batch = 4, .rate = 1e-2});
+  const UnetTransfer model = training.learned({.channels = 8, .epochs = 120, .batch = 4, .rate = 1e-2});
   double off = 0, all = 0;
   for (const Seen& pose : poses) {
     const Eigen::VectorXf found = model.predict(pose.sites);
@@ -330,7 +330,7 @@ TEST(Unet, TrainsWithLibTorch) {
   }
   EXPECT_LT(std::sqrt(off / all), 0.5);
   std::atomic<bool> stop = true;
-  EXPECT_THROW(training.learnt({.channels = 8}, Progress({}, &stop)), Cancelled);
+  EXPECT_THROW(training.learned({.channels = 8}, Progress({}, &stop)), Cancelled);
 }
 
 }  // namespace
