@@ -119,8 +119,9 @@ void print(const json& info) {
   for (const json& o : info.at("objects")) {
     const json &low = o.at("bounds").at("min"), &high = o.at("bounds").at("max");
     fmt::print("{}{}\n", printable(o.at("name").get<std::string>()), o.at("visible").get<bool>() ? "" : "  (hidden)");
+    const auto files = o.at("chunks").get<std::size_t>();
     fmt::print("  layout         {}, {} texture set(s){}\n", format_words(o), o.at("texture_sets").get<std::size_t>(),
-               o.at("chunks").get<std::size_t>());
+               files > 0 ? fmt::format(", {} geometry file(s)", files) : "");
     fmt::print("  geometry       {} vertices, {} triangles\n", o.at("vertices").get<std::size_t>(),
                o.at("triangles").get<std::size_t>());
     std::string sizes;

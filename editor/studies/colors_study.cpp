@@ -4,14 +4,12 @@
 
 #include "editor/studies/study.h"
 #include "mesh_ops/registration/color_match.h"
+#include "mesh_ops/scene/scene_light.h"
 #include "mesh_ops/training/texel_colors.h"
 
 namespace rebake {
 
 namespace {
-
-double linear_light(double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); }
-double display_color(double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055; }
 
 // A texture of the colours that the object shows along one direction, multiplied in linear light.
 std::shared_ptr<const FeatureTexture> exposed(const BakedObject& object, const FeatureTexture& texture,
@@ -31,8 +29,8 @@ std::shared_ptr<const FeatureTexture> exposed(const BakedObject& object, const F
           row[x] = {{255, 0, 0, 0}, {0, 0, 0, 255}};
           for (std::size_t c = 0; c < 3; ++c) {
             const double color = colors[static_cast<std::size_t>(x)][static_cast<Eigen::Index>(c)];
-            row[x].feat0[1 + c] = static_cast<std::uint8_t>(
-                std::lround(255 * std::min(1.0, display_color(exposure * linear_light(color)))));
+            row[x].feat0[1 + c] =
+                static_cast<std::uint8_t>(std::lround(255 * std::min(1.0, to_display(exposure * to_linear(color)))));
           }
         }
       }));

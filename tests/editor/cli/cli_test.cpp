@@ -52,6 +52,21 @@ TEST_F(Cli, InfoAsJson) {
   for (const char* key : {"opaque_texels", "bounds", "memory"}) EXPECT_TRUE(info.contains(key)) << key;
 }
 
+TEST_F(Cli, InfoNamesFormatAndDecoder) {
+  const auto said = [&](const std::string& path) { return rebake_run("info " + path).text; };
+  const std::string tests = REBAKE_SOURCE "/tests/mesh_ops/formats/";
+  EXPECT_NE(said(in("ball")).find("split, 1 texture set(s), 1 geometry file(s)\n"), std::string::npos)
+      << said(in("ball"));
+  EXPECT_NE(said(in("ball")).find("decoder        11-16-16-3\n"), std::string::npos);
+  const std::string nerf2mesh = said(tests + "nerf2mesh/written_by_nerf2mesh");
+  EXPECT_NE(nerf2mesh.find("layout         nerf2mesh, 2 texture set(s), 4 geometry file(s)\n"), std::string::npos)
+      << nerf2mesh;
+  EXPECT_NE(nerf2mesh.find("decoder        6-32-3, added to a diffuse colour\n"), std::string::npos) << nerf2mesh;
+  const std::string mesh = said(tests + "meshes/blender/blender.glb");
+  EXPECT_NE(mesh.find("layout         glTF, 2 texture set(s)\n"), std::string::npos) << mesh;
+  EXPECT_NE(mesh.find("decoder        none: texels hold colours\n"), std::string::npos) << mesh;
+}
+
 TEST_F(Cli, RenderCompareAndTiming) {
   const Outcome o = rebake_run("render " + in("ball") + " -o " + in("a.png") + " --size 64x48 --time 2 --plan --json");
   ASSERT_EQ(o.code, 0) << o.text;

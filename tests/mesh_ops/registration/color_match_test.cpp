@@ -9,6 +9,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_files.h"
+#include "mesh_ops/scene/scene_light.h"
 #include "mesh_ops/texture/decoder.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/nerf2mesh_example.h"
@@ -87,8 +88,6 @@ TEST(ColorMatch, RejectsOutliers) {
 
 // Exposure in linear light is not a change of logits, but close to one.
 TEST(ColorMatch, ExposureIsNearlyAChangeOfLogits) {
-  const auto linear = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
-  const auto display = [](double c) { return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055; };
   // With colours over the whole range.
   auto bright = std::make_shared<BakedObject>(*smooth_object(5, AlphaCode::plain));
   bright->decoder = std::make_shared<const Decoder>(diffuse_decoder());
@@ -102,7 +101,7 @@ TEST(ColorMatch, ExposureIsNearlyAChangeOfLogits) {
           if (texel.opaque()) texel.feat0[0] = 255;
           for (std::size_t c = 1; c < 4; ++c)
             texel.feat0[c] =
-                static_cast<std::uint8_t>(std::lround(255 * display(exposure * linear(texel.feat0[c] / 255.0))));
+                static_cast<std::uint8_t>(std::lround(255 * to_display(exposure * to_linear(texel.feat0[c] / 255.0))));
         }
       set.texels = change.finish();
     }
