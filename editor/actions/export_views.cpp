@@ -8,11 +8,22 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 
 namespace rebake {
+
+namespace {
+
+// Whether a file of any name is one that this action wrote.
+bool holds_cameras(const std::filesystem::path& path) {
+  const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
+  return root.is_object() && (root.contains("frames") || root.contains("camera_path"));
+}
+
+}  // namespace
 
 void run(Session& session, const ExportViewsAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
@@ -20,7 +31,7 @@ void run(Session& session, const ExportViewsAction& action) {
   session.document.sources().check_file(action.out);
   if (std::error_code error; std::filesystem::is_regular_file(action.out, error) &&
                              std::filesystem::file_size(action.out, error) > 0 &&
-                             camera_format_at(action.out) == nullptr)
+                             camera_format_at(action.out) == nullptr && !holds_cameras(action.out))
     throw FileError(action.out, "exists and is not a camera file, so it is not replaced; choose another name");
   if (action.width < 1 || action.width > 1 << 20) throw FieldError("width", "must lie between 1 and 1048576");
   if (action.height < 1 || action.height > 1 << 20) throw FieldError("height", "must lie between 1 and 1048576");

@@ -108,6 +108,12 @@ std::string edited_output(const Mark& mark) {
   return edited == mark.wrote.end() ? "" : edited->path;
 }
 
+// A mark that lists files, but matches no key.
+std::string list_without_key(const std::string& mark) {
+  const std::size_t first = mark.find('\n');
+  return mark.starts_with("{\"below_asked\"") && first != std::string::npos ? mark.substr(first + 1) : mark;
+}
+
 void set_quality_message(BatchResult& result, bool below_requested_psnr) {
   result.below_requested_psnr = below_requested_psnr;
   if (below_requested_psnr) result.message = "an export is below the requested psnr; the log names the worst object";
@@ -191,9 +197,12 @@ class Processes {
   Processes() = default;
   Processes(const Processes&) = delete;
   Processes& operator=(const Processes&) = delete;
-  ~Processes() {
+  ~Processes() { end(); }
+  // Interrupts all processes and waits for them.
+  void end() {
     for (const auto& [process, job] : jobs_) ::kill(process, SIGINT);
     for (const auto& [process, job] : jobs_) ::waitpid(process, nullptr, 0);
+    jobs_.clear();
   }
   std::size_t size() const { return jobs_.size(); }
   void add(pid_t process, Job job) { jobs_.emplace(process, std::move(job)); }
@@ -280,13 +289,21 @@ ScenesByName matched_scenes(const BatchOptions& options) {
   return by_name;
 }
 
-// Whether a batch wrote the result of this name: it is listed as written, or its process did not end well.
+// Marks the state folders in which a log alone does not tell that a batch wrote a result.
+fs::path state_version_file(const BatchOptions& options) { return state_folder(options) / "version-2"; }
+
+// Whether a batch wrote the result of this name: it, or something in it, is listed as written; or its process did not
+// end well. The folder may have been moved since.
 bool written_by_batch(const BatchOptions& options, const std::string& name) {
-  const fs::path state = state_folder(options);
+  const fs::path state = state_folder(options), result = fs::weakly_canonical(options.out / name);
   if (fs::exists(state / (name + ".unfinished"))) return true;
+  if (!fs::exists(state_version_file(options)))
+    return fs::exists(state / (name + ".log")) || fs::exists(state / (name + ".done"));
   const std::vector<Mark::File> wrote = read_mark(state / (name + ".done")).wrote;
   return std::any_of(wrote.begin(), wrote.end(), [&](const Mark::File& file) {
-    return absolute_path(file.path) == absolute_path(options.out / name);
+    const fs::path path = fs::weakly_canonical(file.path);
+    if (std::mismatch(result.begin(), result.end(), path.begin(), path.end()).first == result.end()) return true;
+    return path.filename() == result.filename() && is_unchanged({result.string(), file.content});
   });
 }
 
@@ -299,8 +316,8 @@ void check_results(const BatchOptions& options, const ScenesByName& scenes) {
       throw FieldError(
           "--out", fmt::format("{} is a link, whose target would be replaced; choose another folder", result.string()));
     if (fs::exists(result, error) && !written_by_batch(options, name))
-      throw FieldError("--out",
-                       fmt::format("{} exists, but no batch wrote it; choose another folder", result.string()));
+      throw FieldError("--out", fmt::format("{} exists, but no batch wrote it; move it away, or choose another folder",
+                                            result.string()));
   }
 }
 
@@ -368,6 +385,7 @@ class BatchRun {
     std::error_code error;
     fs::create_directories(state_folder(options), error);
     if (error) throw FileError(options.out, "cannot be created: " + error.message());
+    keep_results_of_earlier_versions();
     // No script may overwrite another scene or an input of another script.
     std::string list;
     for (const auto& [reader, path] : found.protected_paths) list += reader + '\0' + path.string() + '\0';
@@ -378,6 +396,10 @@ class BatchRun {
   }
   ~BatchRun() {
     std::error_code ignored;
+    running_.end();
+    for (const BatchResult& result : results_)
+      if (!result.name.empty() && !fs::exists(options_.out / result.name, ignored))
+        fs::remove(state_file(result, ".unfinished"), ignored);
     fs::remove(sources_, ignored);
   }
   BatchRun(const BatchRun&) = delete;
@@ -409,6 +431,18 @@ class BatchRun {
     return state_folder(options_) / (result.name + ending);
   }
 
+  // Earlier versions kept no mark of scenes that were killed or failed.
+  void keep_results_of_earlier_versions() const {
+    if (fs::exists(state_version_file(options_))) return;
+    for (const auto& entry : fs::directory_iterator(state_folder(options_))) {
+      if (entry.path().extension() != ".log") continue;
+      const std::string name = entry.path().stem().string();
+      if (fs::exists(options_.out / name) && !fs::exists(state_folder(options_) / (name + ".done")))
+        write_file_atomically(state_folder(options_) / (name + ".unfinished"), "", {});
+    }
+    write_file_atomically(state_version_file(options_), "", {});
+  }
+
   // Starts a scene. Returns false if it needs no run or cannot be started.
   bool begin(std::size_t k) {
     BatchResult& result = results_[k];
@@ -417,7 +451,12 @@ class BatchRun {
     const fs::path mark = state_file(result, ".done");
     try {
       const std::string key = key_of(options_, program_, script_, scenes_[k]);
-      const Mark before = read_mark(mark);
+      // A rerun that failed left the earlier result's list in the other mark.
+      const fs::path unfinished = state_file(result, ".unfinished");
+      const std::string list_before = fs::exists(mark)         ? read_file(mark)
+                                      : fs::exists(unfinished) ? read_file(unfinished)
+                                                               : "";
+      const Mark before = mark_from(list_before);
       if (options_.resume && is_up_to_date(before, key)) {
         result.status = BatchResult::Status::skipped;
         set_quality_message(result, before.below_requested_psnr);
@@ -432,7 +471,8 @@ class BatchRun {
       }
       for (const Mark::File& output : before.wrote) claims_->release(output.path, result.name);
       // Until the process has ended, what is at the result's place may be its own.
-      write_file_atomically(state_file(result, ".unfinished"), "", {});
+      fs::remove(unfinished);
+      write_file_atomically(unfinished, list_without_key(list_before), {});
       fs::remove(mark);
       // Remove these names first: if they are links, their targets must not be overwritten.
       for (const char* ending : {".log", ".files"}) fs::remove(state_file(result, ending));
@@ -450,7 +490,11 @@ class BatchRun {
     result.seconds = std::chrono::duration<double>(Clock::now() - job.since).count();
     // Exit code 4: done, but an export missed the PSNR that the script requires.
     std::error_code error;
-    if (!fs::exists(options_.out / result.name, error)) fs::remove(state_file(result, ".unfinished"), error);
+    const fs::path unfinished = state_file(result, ".unfinished");
+    if (!fs::exists(options_.out / result.name, error))
+      fs::remove(unfinished, error);
+    else if (!edited_output(mark_from(read_file(unfinished))).empty())
+      write_file_atomically(unfinished, "", {});  // the process replaced the earlier result
     const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
     if (!below && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
       result.message = last_error(state_file(result, ".log"), status);
@@ -472,7 +516,7 @@ class BatchRun {
     if (result.status == BatchResult::Status::done) {
       write_file_atomically(state_file(result, ".done"),
                             json{{"key", job.key}, {"below_asked", below}}.dump() + '\n' + files, {});
-      fs::remove(state_file(result, ".unfinished"), error);
+      fs::remove(unfinished, error);
     }
   }
 

@@ -139,8 +139,14 @@ void refuse_replacing_capture(const std::filesystem::path& file, const std::file
 void protect_captures_at(const std::filesystem::path& folder, SourceGuard& sources) {
   std::error_code error;
   const std::filesystem::path whole = std::filesystem::weakly_canonical(folder, error);
-  for (const std::filesystem::path& place : {whole, whole.parent_path(), whole.parent_path().parent_path()}) {
-    if (!std::filesystem::is_directory(place, error) || camera_format_at(place) == nullptr) continue;
+  std::vector<std::filesystem::path> cameras{whole, whole.parent_path(), whole.parent_path().parent_path()};
+  // Also files of other names, such as transforms_train.json.
+  for (const std::filesystem::path& place : std::vector(cameras))
+    for (auto entry = std::filesystem::directory_iterator(place, error); !error && entry != std::filesystem::end(entry);
+         entry.increment(error))
+      if (entry->path().extension() == ".json") cameras.push_back(entry->path());
+  for (const std::filesystem::path& place : cameras) {
+    if (!std::filesystem::exists(place, error) || camera_format_at(place) == nullptr) continue;
     try {
       std::vector<std::string> notes;
       for (const std::filesystem::path& file : capture_files(place, read_cameras(place, "", {}, notes)))

@@ -173,7 +173,8 @@ ColorMatch matched_colors(const std::vector<PlacedNode>& changed, const std::vec
   const double diagonal = std::min(box_of(from).diagonal().norm(), box_of(onto).diagonal().norm());
   std::vector<PlacedNode> both = changed;
   both.insert(both.end(), fixed.begin(), fixed.end());
-  const Pairs pairs = pairs_of(from, onto, rays_through(both), options.distance * diagonal, 0.2 * diagonal, progress);
+  const Pairs pairs = pairs_of(from, onto, rays_through(both), options.distance * diagonal,
+                               std::max(0.2, 8 * options.distance) * diagonal, progress);
   ColorMatch match;
   match.pairs = pairs.points;
   if (match.pairs < fewest_points)

@@ -19,7 +19,11 @@ CapturePair capture_pair(const Scene& scene, NodeId node, const std::optional<No
   if (to) add_ids(find(scene, to->id), fixed);
   CapturePair pair;
   for (PlacedNode& placed : placed_nodes(scene)) {
-    if (!placed.visible || !placed.node->object) continue;
+    if (!placed.node->object) continue;
+    if (!placed.visible) {
+      if (changed.contains(placed.node->id)) pair.hidden.push_back(placed.node->id);
+      continue;
+    }
     const bool changes = changed.contains(placed.node->id), stays = to ? fixed.contains(placed.node->id) : !changes;
     if (changes && stays) throw FieldError("to", "is the node itself, or in it");
     if (changes)

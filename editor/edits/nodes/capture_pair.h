@@ -7,6 +7,7 @@ namespace rebake {
 /// Two captures of one place: a node that an edit changes, and objects that stay.
 struct CapturePair {
   std::vector<PlacedNode> changed, fixed;
+  std::vector<NodeId> hidden;  ///< hidden objects in the node that is changed
 };
 
 /// The visible objects in `node`, and those in `to`; without `to`, all other visible objects stay. Throws FieldError

@@ -20,11 +20,14 @@ Outcome apply(const Scene& scene, const MatchColors& edit, const Progress& progr
   const ColorMatch match = matched_colors(pair.changed, pair.fixed, options, progress);
   Scene result = scene;
   std::map<const BakedObject*, std::shared_ptr<const BakedObject>> made;
-  for (const PlacedNode& placed : pair.changed) {
-    auto& known = made[placed.node->object.get()];
-    if (!known) known = recolored(*placed.node->object, match.change);
-    result = with_changed(result, placed.node->id, [&](Node& node) { node.object = known; });
-  }
+  std::vector<NodeId> nodes = pair.hidden;
+  for (const PlacedNode& placed : pair.changed) nodes.push_back(placed.node->id);
+  for (const NodeId id : nodes)
+    result = with_changed(result, id, [&](Node& node) {
+      auto& known = made[node.object.get()];
+      if (!known) known = recolored(*node.object, match.change);
+      node.object = known;
+    });
   Report report;
   const auto& [gain, offset] = match.change;
   report.lines.push_back(fmt::format(

@@ -136,8 +136,10 @@ void SelectMasks::set_input(const EditSource& source) {
   content = source.content;
   // Relative to the capture, so that masks are found again when both have moved.
   if (fs::path(masks).is_absolute()) {
-    const fs::path relative = fs::path(masks).lexically_relative(capture_folder(path));
-    if (!relative.empty()) masks = relative.string();
+    std::error_code error;
+    const fs::path base = capture_folder(path), relative = fs::path(masks).lexically_relative(base);
+    // Not through links, which make ".." lead elsewhere.
+    if (!relative.empty() && fs::equivalent(base / relative, masks, error)) masks = relative.string();
   }
   if (!masks_content.empty()) return;
   std::vector<std::string> notes;

@@ -11,7 +11,12 @@
 
 namespace rebake {
 
-void MeasureTool::add(const Vec3& point) {
+void MeasureTool::forget_stale(const ToolContext& editor) {
+  if (!points_.empty() && editor.at_rest() && editor.scene().roots != roots_) points_.clear();
+}
+
+void MeasureTool::add(const ToolContext& editor, const Vec3& point) {
+  roots_ = editor.scene().roots;
   if (points_.size() == 2) points_.clear();
   points_.push_back(point);
   if (points_.size() == 2) length_ = (points_[1] - points_[0]).norm();
@@ -20,7 +25,7 @@ void MeasureTool::add(const Vec3& point) {
 void MeasureTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   if (click_.ends(pointer))
     pick_point(editor, lens, pointer.at, "There is no surface at this pixel. Click two points of surfaces.",
-               [this](const PickHit& hit) { add(hit.world); });
+               [this, &editor](const PickHit& hit) { add(editor, hit.world); });
 }
 
 void MeasureTool::draw(const ToolContext& /*editor*/, const ViewportProjection& lens, const Pointer& /*pointer*/,
@@ -37,6 +42,7 @@ void MeasureTool::draw(const ToolContext& /*editor*/, const ViewportProjection& 
 }
 
 void MeasureTool::options(ToolContext& editor) {
+  forget_stale(editor);
   if (points_.size() < 2) {
     ui::hint(points_.empty() ? "Click two points of surfaces." : "Click the second point. Esc starts again.");
     return;
@@ -55,7 +61,8 @@ void MeasureTool::options(ToolContext& editor) {
     // The points scale with the scene.
     editor.edits(
         {edit},
-        [this, factor = length_ / measured] {
+        [this, &editor, factor = length_ / measured] {
+          roots_ = editor.scene().roots;
           for (Vec3& point : points_) point *= factor;
         },
         [this, measured] { length_ = measured; });

@@ -14,9 +14,12 @@ class MeasureTool final : public ViewTool {
   void cancel(ToolContext& editor) override;
 
  private:
-  void add(const Vec3& point);
+  void add(const ToolContext& editor, const Vec3& point);
+  /// Forgets the points if the scene has changed since they were clicked.
+  void forget_stale(const ToolContext& editor);
 
-  std::vector<Vec3> points_;  ///< clicked, at most two; world space
+  std::vector<NodePtr> roots_;  ///< scene of the points
+  std::vector<Vec3> points_;    ///< clicked, at most two; world space
   Click click_;
   double length_ = 0;  ///< distance of the two points, as edited in the field
 };

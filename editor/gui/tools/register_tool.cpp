@@ -40,6 +40,7 @@ void RegisterTool::add(ToolContext& editor, const PickHit& hit) {
     return;
   }
   (moves ? from_ : onto_).push_back(hit.world);
+  roots_ = editor.scene().roots;
 }
 
 void RegisterTool::pointer(ToolContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
@@ -85,6 +86,7 @@ std::string RegisterTool::fit_words() const {
 }
 
 void RegisterTool::options(ToolContext& editor) {
+  if (!from_.empty() && editor.at_rest() && editor.scene().roots != roots_) cancel(editor);
   ui::toggle("Scale##scale", scale_);
   ui::tip("Scale", "", "Also changes the node's size. Off: it only moves and rotates.");
   ui::flow(px(80));

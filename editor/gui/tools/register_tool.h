@@ -23,6 +23,7 @@ class RegisterTool final : public ViewTool {
   /// Residuals of the pairs, or the reason why they determine no motion.
   std::string fit_words() const;
 
+  std::vector<NodePtr> roots_;     ///< scene of the points, which are forgotten when it changes
   NodeId node_ = NodeId::none;     ///< the node that moves
   std::vector<Vec3> from_, onto_;  ///< points of it, and their counterparts; world space
   Click click_;

@@ -121,6 +121,37 @@ TEST_F(Batch, ResumeKeepsEditedResults) {
   EXPECT_NE(folder_bytes(options.out / "a"), edited);
 }
 
+TEST_F(Batch, ResumeKeepsResultsThatWereEditedAfterAFailedRun) {
+  run();
+  const std::string script = read_file(options.script);
+  options.resume = true;
+  write_text(options.script, R"({"op": "remove", "node": "none"})");
+  EXPECT_EQ(run()["a"], Status::failed);
+  std::ofstream(options.out / "a/mlp.json", std::ios::app) << "\n";
+  const auto edited = folder_bytes(options.out / "a");
+  write_text(options.script, script);
+  const auto statuses = run();
+  EXPECT_EQ(statuses.at("a"), Status::failed);
+  EXPECT_EQ(statuses.at("b"), Status::done);
+  EXPECT_EQ(folder_bytes(options.out / "a"), edited);
+}
+
+TEST_F(Batch, OwnResultsAreKnownWhereverTheyAre) {
+  write_text(options.script, R"({"op": "export", "out": ")" + options.out.string() + R"(/{name}/inside"})");
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(run()["a"], Status::done) << "exports below the result's folder";
+  fs::remove_all(options.out);
+  write_text(options.script, R"({"op": "select", "all": true})");
+  run();
+  fs::rename(options.out, folder_.path() / "moved");
+  options.out = folder_.path() / "moved";
+  EXPECT_EQ(run()["a"], Status::done) << "a folder that was moved";
+  // As an earlier version left it when it was killed.
+  fs::remove(options.out / ".rebake-batch/version-2");
+  fs::remove(options.out / ".rebake-batch/a.done");
+  options.resume = true;
+  EXPECT_EQ(run()["a"], Status::done);
+}
+
 TEST_F(Batch, ScenesThatChangeDuringTheRunAreNotDone) {
   // The script writes beside the scene's own files.
   write_text(options.script, R"({"op": "render", "out": "{path}/feat0_picture.png", "width": 8, "height": 8})"
@@ -277,7 +308,7 @@ TEST_F(Batch, OwnFilesDoNotFollowLinks) {
   run();
   write_text(folder_.path() / "precious", "kept");
   fs::remove_all(options.out / "a");
-  for (const char* file : {"a.log", "a.files", "a.done"}) {
+  for (const char* file : {"a.log", "a.files", "a.done", "a.unfinished"}) {
     fs::remove(options.out / ".rebake-batch" / file);
     fs::create_symlink(folder_.path() / "precious", options.out / ".rebake-batch" / file);
   }

@@ -187,8 +187,11 @@ TEST_F(Cli, RendersEveryCameraOfAFile) {
   std::filesystem::copy_file(in("train/r_0.png"), in("other/images/r_0.png"));
   for (nlohmann::json& frame : file["frames"])
     frame["file_path"] = "images/" + frame["file_path"].get<std::string>().substr(8);
-  write_text(in("other/transforms.json"), file.dump());
-  EXPECT_EQ(rebake_run(render + " -o " + in("other/images")).code, 1);
+  for (const char* name : {"other/transforms.json", "other/transforms_train.json"}) {
+    write_text(in(name), file.dump());
+    EXPECT_EQ(rebake_run(render + " -o " + in("other/images")).code, 1) << name;
+    std::filesystem::remove(in(name));
+  }
   EXPECT_EQ(read_image(in("other/images/r_0.png")).width, 1);
   EXPECT_EQ(rebake_run(render + " -o " + in("pictures") + " --size 20x20").code, 2);
   EXPECT_EQ(rebake_run(render + " -o " + in("pictures") + " --camera-format colmap").code, 1);

@@ -197,6 +197,16 @@ TEST_F(SelectMasksTest, MovedMasksAreFoundBesideTheMovedCapture) {
   EXPECT_EQ(*find(opened.scene(), "other")->selection, *find(document_.scene(), "other")->selection);
 }
 
+TEST_F(SelectMasksTest, AbsoluteMasksOfACaptureBehindALink) {
+  write_masks([](int, std::uint8_t label) { return label == 2 ? 255 : 0; });
+  fs::create_directories(path("deep/er"));
+  fs::rename(path("shoot"), path("deep/er/shoot"));
+  fs::rename(path("deep/er/shoot/masks"), path("masks"));
+  fs::create_directory_symlink(path("deep/er"), path("link"));
+  act(document_, {{"op", "select_masks"}, {"path", path("link/shoot").string()}, {"masks", path("masks").string()}});
+  EXPECT_NE(find(document_.scene(), "other")->selection, nullptr);
+}
+
 TEST_F(SelectMasksTest, ScriptsProtectMasksAndPhotographsOfLaterLines) {
   write_masks([](int, std::uint8_t label) { return label == 2 ? 255 : 0; });
   write_text(path("shoot/photo0.jpg"), "a photograph");
