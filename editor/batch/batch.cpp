@@ -17,6 +17,7 @@
 #include <optional>
 #include <set>
 
+#include "editor/batch/batch_mark.h"
 #include "editor/document/sources.h"
 #include "editor/script/script_inputs.h"
 #include "mesh_ops/base/error.h"
@@ -54,64 +55,6 @@ std::string key_of(const BatchOptions& options, std::uint64_t program, std::uint
   all += '\n' + fs::current_path().string();
   for (const std::string& variable : options.variables) all += '\n' + variable;
   return hash_text(content_hash(all));
-}
-
-// Mark that a scene is done: its key, and the files that its process read and wrote, with hashes of their contents.
-struct Mark {
-  struct File {
-    std::string path, content;
-  };
-  std::string key;
-  bool below_requested_psnr = false;  // an export missed the PSNR that the script requires
-  std::vector<File> read, wrote;
-};
-
-// Parses one JSON object per line; skips other lines.
-Mark mark_from(const std::string& text) {
-  Mark mark;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const json line = json::parse(text.begin() + static_cast<std::ptrdiff_t>(begin),
-                                  text.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-    begin = end + 1;
-    if (!line.is_object()) continue;
-    mark.key = line.value("key", mark.key);
-    mark.below_requested_psnr = line.value("below_asked", mark.below_requested_psnr);
-    if (line.contains("read")) mark.read.push_back({line.value("read", ""), line.value("content", "")});
-    if (line.contains("wrote")) mark.wrote.push_back({line.value("wrote", ""), line.value("content", "")});
-  }
-  return mark;
-}
-
-Mark read_mark(const fs::path& path) { return fs::exists(path) ? mark_from(read_file(path)) : Mark(); }
-
-bool is_unchanged(const Mark::File& file) {
-  try {
-    return hash_text(content_hash_at(file.path)) == file.content;
-  } catch (const FileError&) {
-    return false;
-  }
-}
-
-// Whether the scene was done with this key, and all files that it read and wrote are unchanged.
-bool is_up_to_date(const Mark& mark, const std::string& key) {
-  return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_unchanged) &&
-         std::all_of(mark.wrote.begin(), mark.wrote.end(), is_unchanged);
-}
-
-// The first output that still exists, but not as it was written; empty if there is none.
-std::string edited_output(const Mark& mark) {
-  const auto edited = std::find_if(mark.wrote.begin(), mark.wrote.end(), [](const Mark::File& file) {
-    std::error_code error;
-    return fs::exists(file.path, error) && !is_unchanged(file);
-  });
-  return edited == mark.wrote.end() ? "" : edited->path;
-}
-
-// A mark that lists files, but matches no key.
-std::string list_without_key(const std::string& mark) {
-  const std::size_t first = mark.find('\n');
-  return mark.starts_with("{\"below_asked\"") && first != std::string::npos ? mark.substr(first + 1) : mark;
 }
 
 void set_quality_message(BatchResult& result, bool below_requested_psnr) {
@@ -299,8 +242,8 @@ bool written_by_batch(const BatchOptions& options, const std::string& name) {
   if (fs::exists(state / (name + ".unfinished"))) return true;
   if (!fs::exists(state_version_file(options)))
     return fs::exists(state / (name + ".log")) || fs::exists(state / (name + ".done"));
-  const std::vector<Mark::File> wrote = read_mark(state / (name + ".done")).wrote;
-  return std::any_of(wrote.begin(), wrote.end(), [&](const Mark::File& file) {
+  const std::vector<BatchMark::File> wrote = read_mark(state / (name + ".done")).wrote;
+  return std::any_of(wrote.begin(), wrote.end(), [&](const BatchMark::File& file) {
     const fs::path path = fs::weakly_canonical(file.path);
     if (std::mismatch(result.begin(), result.end(), path.begin(), path.end()).first == result.end()) return true;
     return path.filename() == result.filename() && is_unchanged({result.string(), file.content});
@@ -456,7 +399,7 @@ class BatchRun {
       const std::string list_before = fs::exists(mark)         ? read_file(mark)
                                       : fs::exists(unfinished) ? read_file(unfinished)
                                                                : "";
-      const Mark before = mark_from(list_before);
+      const BatchMark before = mark_from(list_before);
       if (options_.resume && is_up_to_date(before, key)) {
         result.status = BatchResult::Status::skipped;
         set_quality_message(result, before.below_requested_psnr);
@@ -469,8 +412,8 @@ class BatchRun {
             edited);
         return false;
       }
-      for (const Mark::File& output : before.wrote) claims_->release(output.path, result.name);
-      // Until the process has ended, what is at the result's place may be its own.
+      for (const BatchMark::File& output : before.wrote) claims_->release(output.path, result.name);
+      // Present while the process runs: a result that appears meanwhile is the batch's own.
       fs::remove(unfinished);
       write_file_atomically(unfinished, list_without_key(list_before), {});
       fs::remove(mark);
@@ -507,7 +450,7 @@ class BatchRun {
     set_quality_message(result, below);
     const std::string files = read_file(state_file(result, ".files"));
     result.status = BatchResult::Status::done;
-    for (const Mark::File& output : mark_from(files).wrote)
+    for (const BatchMark::File& output : mark_from(files).wrote)
       if (const std::string other = claims_->claim(output.path, result.name); !other.empty()) {
         result.status = BatchResult::Status::failed;
         result.message = fmt::format("{} is also written for {}; put {{name}} into the output path in the script",
