@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <memory>
+#include <algorithm>
 
 #include "editor/edits/nodes/set_length.h"
 #include "editor/gui/tools/picked_points.h"
@@ -37,7 +37,7 @@ void MeasureTool::draw(const ToolContext& /*editor*/, const ViewportProjection& 
   const ImVec2 from = on_screen(*a, origin), to = on_screen(*b, origin);
   list.AddLine(from, to, IM_COL32(0, 0, 0, 170), px(4));
   list.AddLine(from, to, IM_COL32(250, 210, 90, 255), px(2));
-  draw_label(list, {(from.x + to.x) / 2 + px(8), (from.y + to.y) / 2},
+  draw_label(list, {std::max(from.x, to.x) + px(16), (from.y + to.y) / 2 - ImGui::GetFontSize() / 2},
              fmt::format("{:.5g}", (points_[1] - points_[0]).norm()));
 }
 
