@@ -21,6 +21,7 @@
 #include "editor/document/sources.h"
 #include "editor/script/script_inputs.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/base/source_guard.h"
@@ -47,6 +48,16 @@ std::string scene_title(const fs::path& scene) {
 // Folder of the batch's own files: per scene a mark when it is done, and the log of its process.
 fs::path state_folder(const BatchOptions& options) { return options.out / ".rebake-batch"; }
 
+// The script's variables for a scene.
+std::map<std::string, std::string> variables_of(const BatchOptions& options, const fs::path& scene) {
+  std::map<std::string, std::string> variables;
+  for (const std::string& variable : options.variables)
+    variables[variable.substr(0, variable.find('='))] = variable.substr(variable.find('=') + 1);
+  variables["name"] = scene_title(scene);
+  variables["path"] = scene.string();
+  return variables;
+}
+
 // Hash of the inputs of a result: version, program, script, scene, variables and the working folder, from which the
 // script's paths start, but not files that the script names. A scene that was done with the same key need not run
 // again.
@@ -55,6 +66,15 @@ std::string key_of(const BatchOptions& options, std::uint64_t program, std::uint
   all += '\n' + fs::current_path().string();
   for (const std::string& variable : options.variables) all += '\n' + variable;
   return hash_text(content_hash(all));
+}
+
+// Hash of the list of files that the script would read for a scene: a file that is added, such as a mask, has no
+// content in an earlier list of files.
+std::string inputs_key(const BatchOptions& options, const fs::path& scene) {
+  std::string all;
+  for (const ScriptInput& input : script_inputs(read_file(options.script), variables_of(options, scene)))
+    all += input.path.string() + '\n';
+  return '-' + hash_text(content_hash(all));
 }
 
 void set_quality_message(BatchResult& result, bool below_requested_psnr) {
@@ -136,6 +156,7 @@ class Processes {
     std::size_t scene;
     std::string key;
     Clock::time_point since;
+    std::unique_ptr<FileLock> lock;  // of the scene's result
   };
   Processes() = default;
   Processes(const Processes&) = delete;
@@ -267,16 +288,12 @@ void check_results(const BatchOptions& options, const ScenesByName& scenes) {
 // See BatchScenes::guarded.
 std::vector<std::pair<std::string, fs::path>> guarded_by(const BatchOptions& options, const ScenesByName& scenes) {
   const std::string script = read_file(options.script);
-  std::map<std::string, std::string> variables;
-  for (const std::string& variable : options.variables)
-    variables[variable.substr(0, variable.find('='))] = variable.substr(variable.find('=') + 1);
   std::vector<std::pair<std::string, fs::path>> protected_paths;
   std::map<fs::path, std::set<std::string>> readers;
   for (const auto& [name, folder] : scenes) {
     protected_paths.emplace_back("", fs::absolute(folder));
-    variables["name"] = name;
-    variables["path"] = folder.string();
-    for (const ScriptInput& input : script_inputs(script, variables)) readers[fs::absolute(input.path)].insert(name);
+    for (const ScriptInput& input : script_inputs(script, variables_of(options, folder)))
+      readers[fs::absolute(input.path)].insert(name);
   }
   for (const auto& [path, names] : readers) protected_paths.emplace_back(names.size() == 1 ? *names.begin() : "", path);
   return protected_paths;
@@ -393,6 +410,11 @@ class BatchRun {
     result.name = scene_title(scenes_[k]);
     const fs::path mark = state_file(result, ".done");
     try {
+      auto lock = std::make_unique<FileLock>(state_file(result, ".lock"));
+      if (!lock->held()) {
+        result.message = "another batch is processing this scene into the same folder";
+        return false;
+      }
       const std::string key = key_of(options_, program_, script_, scenes_[k]);
       // A rerun that failed left the earlier result's list in the other mark.
       const fs::path unfinished = state_file(result, ".unfinished");
@@ -400,7 +422,7 @@ class BatchRun {
                                       : fs::exists(unfinished) ? read_file(unfinished)
                                                                : "";
       const BatchMark before = mark_from(list_before);
-      if (options_.resume && is_up_to_date(before, key)) {
+      if (options_.resume && is_up_to_date(before, key + inputs_key(options_, scenes_[k]))) {
         result.status = BatchResult::Status::skipped;
         set_quality_message(result, before.below_requested_psnr);
         return false;
@@ -420,7 +442,7 @@ class BatchRun {
       // Remove these names first: if they are links, their targets must not be overwritten.
       for (const char* ending : {".log", ".files"}) fs::remove(state_file(result, ending));
       running_.add(start(options_, scenes_[k], state_file(result, ".log"), state_file(result, ".files"), sources_),
-                   {k, key, Clock::now()});
+                   {k, key, Clock::now(), std::move(lock)});
       return true;
     } catch (const FileError& why) {
       result.message = why.what();
@@ -458,7 +480,9 @@ class BatchRun {
       }
     if (result.status == BatchResult::Status::done) {
       write_file_atomically(state_file(result, ".done"),
-                            json{{"key", job.key}, {"below_asked", below}}.dump() + '\n' + files, {});
+                            json{{"key", job.key + inputs_key(options_, scenes_[job.scene])}, {"below_asked", below}}.dump() +
+                                '\n' + files,
+                            {});
       fs::remove(unfinished, error);
     }
   }

@@ -8,6 +8,7 @@
 #include "editor/batch/batch.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
+#include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 
 namespace rebake {
@@ -117,6 +118,9 @@ void describe_batch(SubcommandDescription& command) {
     batch.report = report;
     batch_scenes(batch);
     std::filesystem::create_directories(batch.out, error);
+    const FileLock lock(report);
+    if (!lock.held())
+      throw FieldError("--report", report.string() + " is being written by another batch; name another file");
     prepare_report(report);
     std::ofstream lines(report);
     if (!lines) throw FileError(report, "cannot be written");

@@ -158,8 +158,12 @@ void prepare_study_folder(const Study& study, const std::filesystem::path& folde
     if (std::filesystem::is_symlink(base + ending, error))
       throw FileError(base + ending, "is a symbolic link; remove it, since the study would overwrite its target");
   }
-  if (std::filesystem::exists(base + ".csv", error) && !read_file(base + ".csv").starts_with("choice,"))
+  const bool has_table = std::filesystem::exists(base + ".csv", error);
+  if (has_table && !read_file(base + ".csv").starts_with("choice,"))
     throw FileError(base + ".csv", "is not a table of an earlier study; choose another folder");
+  for (const char* ending : {".svg", ".png", "-2.svg", "-2.png"})
+    if (!has_table && std::filesystem::exists(base + ending, error))
+      throw FileError(base + ending, "is not a plot of an earlier study, because its table is missing; choose another folder");
 }
 
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,

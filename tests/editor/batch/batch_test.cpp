@@ -4,8 +4,10 @@
 #include <fstream>
 
 #include "editor/batch/batch.h"
+#include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/images/png_writer.h"
 #include "tests/support/light_pictures.h"
 #include "tests/support/made_scenes.h"
 
@@ -301,6 +303,34 @@ TEST_F(Batch, RejectsReportOverInputFile) {
   options.variables = {"to=" + folder_.path().string()};
   options.report = folder_.path() / "cage-of-a.obj";
   EXPECT_THROW(batch_scenes(options), FileError);
+}
+
+TEST_F(Batch, ResumeNoticesAddedMasks) {
+  fs::create_directories(folder_.path() / "shoot/masks");
+  const std::string pose = "[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]";
+  write_text(folder_.path() / "shoot/transforms.json",
+             R"({"camera_angle_x": 0.7, "w": 2, "h": 2, "frames": [{"file_path": "p0.png", "transform_matrix": )" + pose +
+                 R"(}, {"file_path": "p1.png", "transform_matrix": )" + pose + "}]}");
+  const std::string mask = encode_png(2, 2, 3, std::vector<std::uint8_t>(12, 255), 1);
+  write_text(folder_.path() / "shoot/masks/p0.png", mask);
+  write_text(options.script,
+             R"({"op": "select_masks", "path": ")" + (folder_.path() / "shoot").string() + R"("})");
+  options.resume = true;
+  EXPECT_EQ(run()["a"], Status::done) << messages["a"];
+  EXPECT_EQ(run()["a"], Status::skipped);
+  write_text(folder_.path() / "shoot/masks/p1.png", mask);
+  EXPECT_EQ(run()["a"], Status::done) << messages["a"];
+}
+
+TEST_F(Batch, TwoBatchesDoNotProcessOneSceneAtOnce) {
+  fs::create_directories(options.out / ".rebake-batch");
+  {
+    const FileLock other(options.out / ".rebake-batch/a.lock");
+    ASSERT_TRUE(other.held());
+    EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::failed}, {"b", Status::done}, {"c", Status::done}}));
+    EXPECT_NE(messages["a"].find("another batch is processing this scene"), std::string::npos) << messages["a"];
+  }
+  EXPECT_EQ(run()["a"], Status::done);
 }
 
 // Links in place of the batch's own files are replaced; their targets are not written to.
