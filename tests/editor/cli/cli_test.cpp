@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
 #include "render/image.h"
@@ -139,6 +140,31 @@ TEST_F(Cli, RejectsOutputsOverInputs) {
   EXPECT_EQ(rebake_run("run " + in("s.jsonl") + " --journal " + in("ball/j")).code, 1);
   EXPECT_EQ(rebake_run("run " + in("none.jsonl") + " --scene " + in("ball") + " --journal " + in("ball/j")).code, 1);
   EXPECT_EQ(folder_bytes(in("ball")), before);
+}
+
+TEST_F(Cli, StudiesReplaceOnlyTheirOwnFiles) {
+  const std::string study = "study samples --frames 1 --size 16x16 --scene " + in("ball") + " -o " + in("out");
+  std::filesystem::create_directories(in("out"));
+  write_text(in("out/samples.png"), "a picture");
+  const Outcome refused = rebake_run(study);
+  EXPECT_EQ(refused.code, 1) << refused.text;
+  EXPECT_NE(refused.text.find("is not a plot of an earlier study"), std::string::npos) << refused.text;
+  EXPECT_EQ(read_file(in("out/samples.png")), "a picture");
+  std::filesystem::remove(in("out/samples.png"));
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(study).code, 0);
+}
+
+TEST_F(Cli, BatchesDoNotShareAReport) {
+  write_text(in("s.jsonl"), R"({"op": "select", "all": true})");
+  const std::string batch = "batch " + in("s.jsonl") + " --scenes " + in("ball") + " -o " + in("out");
+  std::filesystem::create_directories(in("out"));
+  {
+    const FileLock other(in("out/report.jsonl"));
+    const Outcome refused = rebake_run(batch);
+    EXPECT_EQ(refused.code, 2) << refused.text;
+    EXPECT_NE(refused.text.find("is being written by another batch"), std::string::npos) << refused.text;
+  }
+  EXPECT_EQ(rebake_run(batch).code, 0);
 }
 
 TEST_F(Cli, TerminalShowsAndErasesProgressBar) {
