@@ -1,6 +1,6 @@
 #include "editor/actions/lit.h"
 
-#include "editor/edits/results.h"
+#include "editor/edits/shared_result_cache.h"
 
 namespace rebake {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "mesh_ops/scene/scene.h"
-#include "render/graph/view.h"
+#include "render/graph/render_view.h"
 #include "render/image.h"
 
 namespace rebake {

@@ -12,7 +12,7 @@
 #include "editor/cli/terminal.h"
 #include "editor/document/replaced_work.h"
 #include "editor/edits/edit.h"
-#include "editor/edits/results.h"
+#include "editor/edits/shared_result_cache.h"
 #include "editor/fields/field_info.h"
 #include "editor/script/script_inputs.h"
 #include "mesh_ops/base/error.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <mutex>
 
-#include "editor/edits/results.h"
+#include "editor/edits/shared_result_cache.h"
 
 namespace rebake {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <limits>
 
-#include "editor/studies/deforming.h"
 #include "editor/studies/hard_points.h"
 #include "editor/studies/study.h"
+#include "editor/studies/study_soup.h"
 #include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 
 namespace rebake {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "editor/studies/study.h"
-#include "mesh_ops/fill/fill_holes.h"
+#include "mesh_ops/fill/filled_holes.h"
 #include "mesh_ops/index/footprint.h"
 #include "mesh_ops/registration/nearest_samples.h"
 #include "mesh_ops/registration/surface_samples.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "editor/studies/deforming.h"
+#include "editor/studies/study_soup.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/deform/bends/closed_form.h"
 #include "mesh_ops/deform/cage_coordinates/cage_deformation.h"

@@ -5,10 +5,10 @@
 #include <functional>
 #include <numbers>
 
-#include "editor/studies/deforming.h"
 #include "editor/studies/gradient_binding.h"
 #include "editor/studies/hard_points.h"
 #include "editor/studies/study.h"
+#include "editor/studies/study_soup.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 

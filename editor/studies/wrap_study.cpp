@@ -3,8 +3,8 @@
 #include <limits>
 #include <set>
 
-#include "editor/studies/deforming.h"
 #include "editor/studies/study.h"
+#include "editor/studies/study_soup.h"
 #include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 
 namespace rebake {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 
 namespace rebake {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "mesh_ops/scene/camera.h"
-#include "mesh_ops/scene/ground.h"
+#include "mesh_ops/scene/ground_plane.h"
 #include "mesh_ops/scene/object.h"
 #include "mesh_ops/scene/scene_light.h"
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "render/graph/view.h"
+#include "render/graph/render_view.h"
 
 namespace rebake {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "render/graph/view.h"
+#include "render/graph/render_view.h"
 #include "render/image.h"
 #include "samples/bakery/surface.h"
 

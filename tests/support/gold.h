@@ -3,7 +3,7 @@
 #include <boost/multiprecision/mpfr.hpp>
 #include <vector>
 
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 
 namespace rebake::test {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "mesh_ops/base/results.h"
+#include "mesh_ops/base/result_cache.h"
 #include "mesh_ops/light/lighting.h"
 #include "mesh_ops/scene/scene.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mesh_ops/scene/scene.h"
-#include "render/graph/view.h"
+#include "render/graph/render_view.h"
 #include "render/image.h"
 
 namespace rebake::test {

@@ -35,14 +35,14 @@ std::shared_ptr<const BakedObject> capture(double from, double to, int steps, do
       faces.push_back({a + 1, b + 1, b});
     }
   std::uniform_real_distribution<double> unit(0, 1);
-  const double cell = 1.0 / steps;
+  const double width = 1.0 / steps;
   const auto count = static_cast<std::size_t>(outliers * static_cast<double>(faces.size()));
   for (std::size_t k = 0; k < count; ++k) {
     const auto first = static_cast<std::uint32_t>(positions.size());
     const Vec3 at(from + (to - from) * unit(random), unit(random), unit(random) - 0.3);
     positions.push_back(at);
-    positions.push_back(at + cell * Vec3(unit(random), unit(random), unit(random)));
-    positions.push_back(at + cell * Vec3(unit(random), -unit(random), unit(random)));
+    positions.push_back(at + width * Vec3(unit(random), unit(random), unit(random)));
+    positions.push_back(at + width * Vec3(unit(random), -unit(random), unit(random)));
     faces.push_back({first, first + 1, first + 2});
   }
   for (Vec3& p : positions) p = place(p);

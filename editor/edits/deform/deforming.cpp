@@ -6,8 +6,8 @@
 
 #include <limits>
 
-#include "editor/edits/results.h"
 #include "editor/edits/select/selecting.h"
+#include "editor/edits/shared_result_cache.h"
 #include "mesh_ops/formats/cage_file.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/opacity.h"

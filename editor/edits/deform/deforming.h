@@ -2,7 +2,7 @@
 
 #include "editor/edits/support.h"
 #include "editor/fields/codec.h"
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 #include "mesh_ops/deform/cages/wrap.h"
 #include "mesh_ops/deform/deform_object.h"
 

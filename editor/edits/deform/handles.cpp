@@ -6,7 +6,7 @@
 
 #include <map>
 
-#include "mesh_ops/deform/handles/handles.h"
+#include "mesh_ops/deform/handles/as_rigid_as_possible.h"
 
 namespace rebake {
 

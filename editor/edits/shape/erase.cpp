@@ -4,7 +4,7 @@
 
 #include "editor/edits/describe_edit.h"
 
-#include "mesh_ops/features/atlas/erase.h"
+#include "mesh_ops/features/atlas/erase_texels.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/select/regions.h"
 

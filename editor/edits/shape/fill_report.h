@@ -1,7 +1,7 @@
 #pragma once
 
 #include "editor/edits/support.h"
-#include "mesh_ops/fill/fill_holes.h"
+#include "mesh_ops/fill/filled_holes.h"
 
 namespace rebake {
 

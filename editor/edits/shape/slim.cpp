@@ -13,7 +13,7 @@
 #include "editor/edits/stored_view.h"
 #include "mesh_ops/features/atlas/atlas.h"
 #include "mesh_ops/features/atlas/near_duplicates.h"
-#include "mesh_ops/features/atlas/slim.h"
+#include "mesh_ops/features/atlas/slimming.h"
 #include "mesh_ops/select/duplicates.h"
 
 namespace rebake {

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "editor/gui/state/dialog_state.h"
-#include "editor/gui/state/project.h"
+#include "editor/gui/state/document_files.h"
 #include "editor/gui/state/relighter.h"
 #include "editor/gui/state/tool_context.h"
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "editor/edits/results.h"
+#include "editor/edits/shared_result_cache.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 
 namespace rebake {
 

@@ -7,7 +7,7 @@
 
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/deform/cage_coordinates/grid_multigrid.h"
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 
 namespace rebake {
 

@@ -2,7 +2,7 @@
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
 
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 
 namespace rebake {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mesh_ops/base/progress.h"
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 
 namespace rebake {
 

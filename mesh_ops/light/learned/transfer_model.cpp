@@ -10,7 +10,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
-#include "mesh_ops/base/results.h"
+#include "mesh_ops/base/result_cache.h"
 #include "mesh_ops/light/transport/occluder.h"
 
 namespace rebake {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesh_ops/base/results.h"
+#include "mesh_ops/base/result_cache.h"
 #include "mesh_ops/light/estimate/light_estimate.h"
 #include "mesh_ops/light/transport/gloss.h"
 #include "mesh_ops/light/transport/irradiance.h"

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "mesh_ops/base/results.h"
+#include "mesh_ops/base/result_cache.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {

@@ -7,7 +7,7 @@
 #include "editor/actions/views.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 #include "mesh_ops/formats/export.h"
 #include "render/compare.h"
 #include "render/picture.h"

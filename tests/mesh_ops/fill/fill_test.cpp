@@ -3,7 +3,7 @@
 
 #include "editor/edits/edit.h"
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/fill/fill_holes.h"
+#include "mesh_ops/fill/filled_holes.h"
 #include "mesh_ops/fill/patch_texture.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/index/footprint.h"

@@ -67,5 +67,50 @@ TEST_F(ReadCage, ErrorsNameTheLine) {
   EXPECT_NE(error_of("a.off", "OFF\n").find("is truncated"), std::string::npos);
 }
 
+TEST(CageFile, ReadsThreeFormatsAndRejectsInvalidMeshes) {
+  TemporaryFolder folder;
+  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 0.3, 2)), 2, 1, 2);
+  // A text file from a header, a line per vertex and a line per face.
+  const auto write = [&](const char* name, const std::string& header, const char* vertex, const char* face,
+                         std::uint32_t first) {
+    std::string text = header;
+    for (const Vec3& v : cage.vertices) text += fmt::format("{}{} {} {}\n", vertex, v.x(), v.y(), v.z());
+    for (const Face& f : cage.faces)
+      text += fmt::format("{}{} {} {}\n", face, f[0] + first, f[1] + first, f[2] + first);
+    write_text(folder.path() / name, text);
+  };
+  const std::size_t vertices = cage.vertices.size(), faces = cage.faces.size();
+  write("cage.obj", "", "v ", "f ", 1);
+  write("cage.off", fmt::format("OFF\n{} {} 0\n", vertices, faces), "", "3 ", 0);
+  write(
+      "cage.ply",
+      fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+                  "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                  vertices, faces),
+      "", "3 ", 0);
+  for (const char* name : {"cage.obj", "cage.off", "cage.ply"}) {
+    EXPECT_EQ(read_cage(folder.path() / name).faces, cage.faces) << name;
+    const std::vector<Vec3> read = read_cage(folder.path() / name).vertices;
+    ASSERT_EQ(read.size(), cage.vertices.size());
+    for (std::size_t v = 0; v < read.size(); ++v)
+      EXPECT_LE((read[v] - cage.vertices[v]).norm(), 1e-7) << name << ": OpenMesh reads coordinates as floats";
+  }
+  const auto refused = [&](const std::string& name, const std::string& text, const std::string& says) {
+    write_text(folder.path() / name, text);
+    try {
+      read_cage(folder.path() / name);
+      ADD_FAILURE() << name << " was read";
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+  };
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\n";
+  refused("open.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 5 4 2\n", "open");
+  refused("quads.obj", corners + "f 1 2 3 4\n", "not triangles");
+  refused("fan.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 2 5\n", "manifold");
+  refused("cage.stl", "solid\n", "ends in .obj");
+  refused("none.ply", "ply\n", "contains no readable mesh");
+}
+
 }  // namespace
 }  // namespace rebake::test

@@ -1,5 +1,5 @@
 // The ground plane: exact cases and random planes.
-#include "mesh_ops/scene/ground.h"
+#include "mesh_ops/scene/ground_plane.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/deform/cage_coordinates/coordinates.h"
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 #include "mesh_ops/formats/export.h"
 #include "render/compare.h"
 #include "render/graph/plan.h"

@@ -11,7 +11,7 @@
 #include "editor/edits/nodes/view.h"
 #include "editor/edits/select/select.h"
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/features/atlas/slim.h"
+#include "mesh_ops/features/atlas/slimming.h"
 #include "mesh_ops/index/texel_patches.h"
 #include "mesh_ops/light/transport/light_chart.h"
 #include "render/compare.h"

@@ -1,7 +1,7 @@
 // The eraser clears the opacity of exactly the texels inside the region.
 #include <gtest/gtest.h>
 
-#include "mesh_ops/features/atlas/erase.h"
+#include "mesh_ops/features/atlas/erase_texels.h"
 #include "mesh_ops/index/footprint.h"
 #include "tests/support/made_scenes.h"
 

@@ -1,4 +1,4 @@
-#include "mesh_ops/features/atlas/slim.h"
+#include "mesh_ops/features/atlas/slimming.h"
 
 #include <tbb/parallel_for.h>
 

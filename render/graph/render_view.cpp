@@ -1,4 +1,4 @@
-#include "render/graph/view.h"
+#include "render/graph/render_view.h"
 
 #include "mesh_ops/base/error.h"
 

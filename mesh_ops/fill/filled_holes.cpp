@@ -1,4 +1,4 @@
-#include "mesh_ops/fill/fill_holes.h"
+#include "mesh_ops/fill/filled_holes.h"
 
 #include <algorithm>
 #include <cmath>

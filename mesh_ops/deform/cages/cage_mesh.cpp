@@ -1,4 +1,4 @@
-#include "mesh_ops/deform/cages/cage.h"
+#include "mesh_ops/deform/cages/cage_mesh.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "mesh_ops/base/results.h"
+#include "mesh_ops/base/result_cache.h"
 
 namespace rebake {
 

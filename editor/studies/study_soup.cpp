@@ -1,4 +1,4 @@
-#include "editor/studies/deforming.h"
+#include "editor/studies/study_soup.h"
 
 #include <map>
 

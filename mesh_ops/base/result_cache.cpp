@@ -1,4 +1,4 @@
-#include "mesh_ops/base/results.h"
+#include "mesh_ops/base/result_cache.h"
 
 #include "mesh_ops/base/hash.h"
 

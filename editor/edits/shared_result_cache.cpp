@@ -1,4 +1,4 @@
-#include "editor/edits/results.h"
+#include "editor/edits/shared_result_cache.h"
 
 #include <utility>
 

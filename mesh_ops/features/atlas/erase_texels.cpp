@@ -1,4 +1,4 @@
-#include "mesh_ops/features/atlas/erase.h"
+#include "mesh_ops/features/atlas/erase_texels.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-#include "mesh_ops/scene/ground.h"
+#include "mesh_ops/scene/ground_plane.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "mesh_ops/deform/handles/handles.h"
+#include "mesh_ops/deform/handles/as_rigid_as_possible.h"
 
 #include <CGAL/Deformation_Eigen_closest_rotation_traits_3.h>
 #include <CGAL/Simple_cartesian.h>

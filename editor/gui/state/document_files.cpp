@@ -1,4 +1,4 @@
-#include "editor/gui/state/project.h"
+#include "editor/gui/state/document_files.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
