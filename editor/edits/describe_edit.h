@@ -46,6 +46,12 @@ EditType type_of(const char* help, Describe) {
     else
       return "";
   };
+  type.change_title = [](const void* edit, const SceneChange& change, const void* replaced) -> std::string {
+    if constexpr (requires(const T& one) { change_title(one, change, &one); })
+      return change_title(*static_cast<const T*>(edit), change, static_cast<const T*>(replaced));
+    else
+      return "";
+  };
   type.fields = fields_of<T, Describe>;
   type.read = [](const nlohmann::json& object, const Scene& scene) {
     return Edit(read_fields<T, Describe>(object, scene));

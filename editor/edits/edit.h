@@ -46,6 +46,8 @@ struct AdjustableField {
   Kind kind;
 };
 
+struct SceneChange;
+
 /// Type-erased description of one kind of edit; table.cpp lists all. Each kind is a struct in its own file, described
 /// there by REBAKE_DESCRIBE_EDIT (describe_edit.h), the only place that names its fields.
 struct EditType {
@@ -63,6 +65,9 @@ struct EditType {
   std::string (*done)(const void* edit);
   /// The title of a step with this edit: a function whole_title(edit). Empty: the title is `done` and what changed.
   std::string (*title)(const void* edit);
+  /// The title of a step from what changed: a function change_title(edit, change, replaced), where `replaced` is the
+  /// edit of the same kind that this one revises, or null. Empty: as above.
+  std::string (*change_title)(const void* edit, const SceneChange& change, const void* replaced);
 
   std::vector<FieldInfo> (*fields)();  ///< names, types, defaults and help
   /// The functions below as read_edit(), to_json() and apply(); `edit` points to the struct.

@@ -1,6 +1,11 @@
 #include "editor/edits/deform/cage.h"
 
+#include <fmt/format.h>
+
+#include <map>
+
 #include "editor/edits/describe_edit.h"
+#include "editor/edits/scene_change.h"
 
 namespace rebake {
 
@@ -31,6 +36,35 @@ Outcome apply(const Scene& scene, const CageDeform& edit, const Progress& progre
       scene, set, edit.target.falloff,
       [&](const std::vector<Vec3>& points) { return deform_points(*coordinates, cage, moved, points, true, progress); },
       cage_warnings(cage, moved));
+}
+
+namespace {
+
+// Number of cage points whose translation differs from that in `replaced` (if not null). 0 if an edit does not list its
+// points by number.
+std::size_t moved_points(const CageDeform& edit, const CageDeform* replaced) {
+  std::map<std::uint64_t, Vec3> motions, known;
+  const auto collect = [](const CageDeform& from, std::map<std::uint64_t, Vec3>& into) {
+    for (const CageMove& move : from.moves) {
+      if (move.points.ranges.empty()) return false;
+      for (const auto& [first, last] : move.points.ranges)
+        for (std::uint64_t k = first; k <= last; ++k) into[k] = move.translate;
+    }
+    return true;
+  };
+  if (!collect(edit, motions) || (replaced != nullptr && !collect(*replaced, known))) return 0;
+  std::size_t moved = 0;
+  for (const auto& [k, motion] : motions) moved += !known.contains(k) || known.at(k) != motion ? 1 : 0;
+  for (const auto& [k, motion] : known) moved += motions.contains(k) ? 0 : 1;
+  return moved;
+}
+
+}  // namespace
+
+std::string change_title(const CageDeform& edit, const SceneChange& change, const CageDeform* replaced) {
+  const std::size_t moved = moved_points(edit, replaced);
+  if (moved == 0) return "";
+  return fmt::format("Moved {} cage point{} of {}", moved, moved == 1 ? "" : "s", listed(change.names));
 }
 
 REBAKE_DESCRIBE_EDIT(

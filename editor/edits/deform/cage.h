@@ -28,5 +28,7 @@ struct Codec<CageCoordinates> {
 };
 
 Outcome apply(const Scene& scene, const CageDeform& edit, const Progress& progress = {});
+/// See EditType::change_title.
+std::string change_title(const CageDeform& edit, const SceneChange& change, const CageDeform* replaced);
 
 }  // namespace rebake

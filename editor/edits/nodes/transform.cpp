@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "editor/edits/describe_edit.h"
+#include "editor/edits/scene_change.h"
 #include "mesh_ops/base/polar.h"
 
 namespace rebake {
@@ -59,6 +60,12 @@ Scene apply(const Scene& scene, const Transform& edit) {
 std::string done_words(const Transform& edit) {
   const bool turns = !edit.rotate.matrix().isIdentity(0), scales = edit.scale.value != Vec3::Ones();
   return turns && !scales ? "Rotated" : scales && !turns ? "Scaled" : scales ? "Rotated and scaled" : "Moved";
+}
+
+std::string change_title(const Transform& edit, const SceneChange& change, const Transform*) {
+  if (!edit.selection) return "";
+  const std::string part = change.selected_before > 0 ? triangles_text(change.selected_before) + " of " : "";
+  return done_words(edit) + " " + part + listed(change.names);
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -24,5 +24,7 @@ const EditType& edit_type<Transform>();
 Scene apply(const Scene& scene, const Transform& edit);
 /// The past tense for titles of steps: see EditType::done.
 std::string done_words(const Transform& edit);
+/// See EditType::change_title.
+std::string change_title(const Transform& edit, const SceneChange& change, const Transform* replaced);
 
 }  // namespace rebake

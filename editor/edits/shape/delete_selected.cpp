@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "editor/edits/describe_edit.h"
+#include "editor/edits/scene_change.h"
 
 namespace rebake {
 
@@ -24,6 +25,10 @@ Outcome apply(const Scene& scene, const DeleteSelected& edit) {
   for (const PlacedNode& placed : placed_nodes(result))
     if (placed.node->object) left += placed.node->object->triangle_count();
   return {std::move(result), {{fmt::format("{} triangles removed, {} left", removed, left)}}};
+}
+
+std::string change_title(const DeleteSelected&, const SceneChange& change, const DeleteSelected*) {
+  return "Deleted " + triangles_text(change.triangles_before - change.triangles_after) + " of " + listed(change.names);
 }
 
 REBAKE_DESCRIBE_EDIT(

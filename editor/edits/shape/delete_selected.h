@@ -14,5 +14,7 @@ template <>
 const EditType& edit_type<DeleteSelected>();
 
 Outcome apply(const Scene& scene, const DeleteSelected& edit);
+/// See EditType::change_title.
+std::string change_title(const DeleteSelected& edit, const SceneChange& change, const DeleteSelected* replaced);
 
 }  // namespace rebake

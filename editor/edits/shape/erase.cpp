@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "editor/edits/describe_edit.h"
+#include "editor/edits/scene_change.h"
 
 #include "mesh_ops/features/atlas/erase_texels.h"
 #include "mesh_ops/index/index.h"
@@ -60,6 +61,10 @@ Outcome apply(const Scene& scene, const Erase& edit) {
     if (edit.sphere) return region_of(points, *edit.sphere);
     return region_of(points, *edit.half_space);
   });
+}
+
+std::string change_title(const Erase&, const SceneChange& change, const Erase*) {
+  return "Erased in " + listed(change.names);
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -20,5 +20,7 @@ template <>
 const EditType& edit_type<Erase>();
 
 Outcome apply(const Scene& scene, const Erase& edit);
+/// See EditType::change_title.
+std::string change_title(const Erase& edit, const SceneChange& change, const Erase* replaced);
 
 }  // namespace rebake

@@ -1,6 +1,7 @@
 #include "editor/edits/shape/separate.h"
 
 #include "editor/edits/describe_edit.h"
+#include "editor/edits/scene_change.h"
 
 namespace rebake {
 
@@ -21,6 +22,10 @@ Scene apply(const Scene& scene, const Separate& edit) {
       with_changed(scene, placed.node->id, [&](Node& node) { keep_triangles(node, selection, false); });
   const auto [parent, index] = place_of(changed, placed.node->id);
   return with_added(changed, std::move(part), parent, index + 1);
+}
+
+std::string change_title(const Separate&, const SceneChange& change, const Separate*) {
+  return "Separated " + triangles_text(change.selected_before) + " as " + listed(change.added);
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "editor/edits/describe_edit.h"
+#include "editor/edits/scene_change.h"
 #include "editor/edits/select/selecting.h"
 #include "editor/edits/stored_view.h"
 #include "mesh_ops/features/atlas/atlas.h"
@@ -237,6 +238,10 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
           name));
   }
   return {std::move(result), {std::move(lines)}};
+}
+
+std::string change_title(const Slim&, const SceneChange& change, const Slim*) {
+  return "Slimmed " + listed(change.names) + " by " + triangles_text(change.triangles_before - change.triangles_after);
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -19,5 +19,7 @@ template <>
 const EditType& edit_type<Slim>();
 
 Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress);
+/// See EditType::change_title.
+std::string change_title(const Slim& edit, const SceneChange& change, const Slim* replaced);
 
 }  // namespace rebake

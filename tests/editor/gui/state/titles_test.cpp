@@ -30,5 +30,21 @@ TEST_F(Titles, NameNodesWithSelectedTriangles) {
   EXPECT_EQ(title_after(R"({"op": "delete"})"), "Deleted 256 triangles of b");
 }
 
+TEST_F(Titles, CountWhatAnEditChanged) {
+  act(document_, R"({"op": "select", "node": "b", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"})");
+  const std::string part = std::to_string(count(*find(document_.scene(), "b")->selection)) + " triangles";
+  EXPECT_EQ(title_after(R"({"op": "transform", "node": "b", "selection": true, "translate": [1, 0, 0]})"),
+            "Moved " + part + " of b");
+  EXPECT_EQ(title_after(R"({"op": "transform", "node": "b", "translate": [1, 0, 0]})"), "Moved b");
+  EXPECT_EQ(title_after(R"({"op": "bend", "degrees": 20})"), "Bent by 20°: " + part + " of b");
+  EXPECT_EQ(
+      title_after(R"({"op": "cage", "lattice": [1, 1, 1], "moves": [{"points": [0, 1], "translate": [0, 1, 0]}]})"),
+      "Moved 2 cage points of b");
+  EXPECT_EQ(title_after(R"({"op": "separate", "node": "b", "as": "c"})"), "Separated " + part + " as c");
+  EXPECT_EQ(
+      title_after(R"({"op": "erase", "node": "a", "box": {"min": [0, 0, 0], "max": [1, 1, 1]}, "frame": "bounds"})"),
+      "Erased in a");
+}
+
 }  // namespace
 }  // namespace rebake::test
