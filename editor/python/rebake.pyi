@@ -123,7 +123,7 @@ class Document:
         picture_size: plain: side of the pictures for measuring, in pixels, 16 to 4096
         nodes: only these nodes and their children; default: all
         """
-    def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", half_direction: bool | None = None, direction_first: bool | None = None, bgr: bool | None = None, alpha: Literal["halved", "plain"] | None = None, no_holes: bool | None = None, ground: bool = False, content: str = "") -> None:
+    def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", half_direction: bool | None = None, direction_first: bool | None = None, bgr: bool | None = None, alpha: Literal["halved", "plain"] | None = None, no_holes: bool | None = None, linear: int | None = None, ground: bool = False, content: str = "") -> None:
         """Reads a scene or a textured mesh into the scene.
 
         path: a folder (MobileNeRF, Rebake scene, nerf2mesh) or a file (.obj, .glb, .gltf, .ply)
@@ -134,6 +134,7 @@ class Document:
         bgr: the folder's images have the channels blue, green, red, alpha
         alpha: code of the alpha channels; default: halved, but plain in unsplit folders
         no_holes: texels whose first feature is 0 are opaque; it becomes 1/255
+        linear: the folder's textures are meant for linear filtering: they become 3, 5, 7 or 9 times as fine per side, which takes the square of it in memory
         ground: move the scene's ground to the lowest point of the scene
         content: expected hash of the folder's files, from projects and journals; other contents are refused
         """

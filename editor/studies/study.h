@@ -56,6 +56,7 @@ StudyTable study_masks(const StudyInput& input);
 StudyTable study_register(const StudyInput& input);
 StudyTable study_colors(const StudyInput& input);
 StudyTable study_fill(const StudyInput& input);
+StudyTable study_filtering(const StudyInput& input);
 
 /// All studies, in the order of `rebake study --help`.
 inline constexpr Study study_table[] = {
@@ -72,6 +73,7 @@ inline constexpr Study study_table[] = {
     {"masks", "selection by masks: photographs and wrong pixels", study_masks},
     {"register", "registration of captures: overlap, outliers and error", study_register},
     {"colors", "matching of two captures' colours: exposure, samples and error", study_colors},
+    {"filtering", "linear filtering by finer textures: memory, error of colours, frame time", study_filtering},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
 

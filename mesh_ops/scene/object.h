@@ -31,6 +31,9 @@ struct Dialect {
   /// Texels whose red byte in feat0 is 0 are opaque. Reading makes it 1, which changes their first feature by 1/255;
   /// exports of edited textures keep the 1.
   bool no_holes = false;
+  /// Textures are meant for linear filtering: reading makes them this many times as fine per side (linear_filter.h), an
+  /// odd number from 3 on. 0: for nearest sampling.
+  int linear = 0;
   bool operator==(const Dialect&) const = default;
 };
 

@@ -63,9 +63,14 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
   return {std::move(result), std::move(report)};
 }
 
+Dialect Import::dialect() const {
+  if (linear && (*linear < 3 || *linear > 9 || *linear % 2 == 0)) throw FieldError("linear", "must be 3, 5, 7 or 9");
+  return {half_direction.set, direction_first.set, bgr.set, alpha, no_holes.set, linear.value_or(0)};
+}
+
 bool describes_folder(const FieldInfo& field) {
-  constexpr std::array<std::string_view, 6> names{"axes", "half_direction", "direction_first",
-                                                  "bgr",  "alpha",          "no_holes"};
+  constexpr std::array<std::string_view, 7> names{"axes",  "half_direction", "direction_first", "bgr",
+                                                  "alpha", "no_holes",       "linear"};
   return std::find(names.begin(), names.end(), field.name) != names.end();
 }
 
@@ -84,6 +89,9 @@ REBAKE_DESCRIBE_EDIT(
       visit("alpha", edit.alpha, Need::optional,
             "code of the alpha channels; default: halved, but plain in unsplit folders");
       visit("no_holes", edit.no_holes, Need::optional, "texels whose first feature is 0 are opaque; it becomes 1/255");
+      visit("linear", edit.linear, Need::optional,
+            "the folder's textures are meant for linear filtering: they become 3, 5, 7 or 9 times as fine per side, "
+            "which takes the square of it in memory");
       visit("ground", edit.ground, Need::optional, "move the scene's ground to the lowest point of the scene");
       visit("content", edit.content, Need::optional,
             "expected hash of the folder's files, from projects and journals; other contents are refused");

@@ -13,10 +13,12 @@ struct Import {
   Axes axes = Axes::y_up;  ///< orientation of a MobileNeRF folder; scenes contain their own
   RareFlag half_direction, direction_first, bgr, no_holes;  ///< as in Dialect
   std::optional<AlphaCode> alpha;                           ///< as in Dialect
+  std::optional<int> linear;                                ///< as in Dialect
   std::string content;                                      ///< expected hash of the folder's files; empty: any
   bool ground = false;  ///< moves the scene's ground to the lowest point of all visible objects
 
-  Dialect dialect() const { return {half_direction.set, direction_first.set, bgr.set, alpha, no_holes.set}; }
+  /// Throws FieldError if `linear` is not an odd number from 3 to 9.
+  Dialect dialect() const;
 
   static constexpr const char* source_field = "path";
   EditSource input() const { return {path, content}; }

@@ -19,6 +19,7 @@
 #include "mesh_ops/formats/mobilenerf/rotations_file.h"
 #include "mesh_ops/formats/mobilenerf/rotations_json.h"
 #include "mesh_ops/formats/mobilenerf/source_file.h"
+#include "mesh_ops/texture/linear_filter.h"
 
 namespace rebake {
 
@@ -141,6 +142,7 @@ void run_job(const fs::path& folder, const BakedLayout& layout, const Dialect& d
   FeatureImages images =
       read_feature_images(feat0.view(), folder / name0, feat1.view(), folder / name1, code, dialect,
                           [&](int image, std::size_t count) { (image == 0 ? feat0 : feat1).release(count); });
+  if (dialect.linear != 0) images.texels = subdivided(images.texels, dialect.linear);
   parts.texels = std::make_shared<const FeatureTexture>(std::move(images.texels));
   parts.assumptions = std::move(images.assumptions);
   if (images.needs_repair[0]) parts.feat0.name.clear();

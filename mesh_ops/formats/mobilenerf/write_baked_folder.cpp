@@ -20,6 +20,7 @@
 #include "mesh_ops/formats/mobilenerf/obj.h"
 #include "mesh_ops/formats/mobilenerf/rotations_file.h"
 #include "mesh_ops/formats/mobilenerf/source_file.h"
+#include "mesh_ops/texture/linear_filter.h"
 
 namespace rebake {
 
@@ -109,7 +110,8 @@ Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::op
   for (const TextureSet& set : object.sets) {
     const Origin::Set* source = source_set(object, set, false);
     const bool same_faces = source != nullptr && source->faces.lock() == set.soup.shared_faces();
-    if (!is_too_large(set) && (all_texels || same_faces || !can_pack(set))) {
+    // Textures for linear filtering lie on the grid of their blocks.
+    if (object.dialect.linear != 0 || (!is_too_large(set) && (all_texels || same_faces || !can_pack(set)))) {
       result.kept.push_back(set);
     } else {
       must_pack = must_pack || is_too_large(set);
@@ -138,6 +140,20 @@ Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::op
   result.pages = as_pages(result.kept);
   std::move(packed.begin(), packed.end(), std::back_inserter(result.pages));
   return result;
+}
+
+// Whether the file's textures, linearly filtered, give all texels of the object.
+bool shows_by_linear_filtering(const BakedObject& object) {
+  const bool same = object.origin && object.origin->dialect.linear == object.dialect.linear;
+  return std::all_of(object.sets.begin(), object.sets.end(), [&](const TextureSet& set) {
+    return (same && source_set(object, set, false) != nullptr) || is_subdivided(*set.texels, object.dialect.linear);
+  });
+}
+
+// The texels of a file in the object's dialect.
+TexelRows file_texels(const TexelRows& texels, const Dialect& dialect) {
+  TexelRows rows = in_channel_order(texels, dialect);
+  return dialect.linear == 0 ? rows : block_centers(std::move(rows), dialect.linear);
 }
 
 // Chunk viewers and the Unity importer fail on an empty chunk, so it gets one triangle whose corners are the same
@@ -222,6 +238,13 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   BakedObject object = made;
   if (object.origin && object.origin->format != Origin{}.format) object.origin = nullptr;
   std::erase_if(object.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
+  if (object.dialect.linear != 0 && (page_side || !shows_by_linear_filtering(object))) {
+    notes.push_back(
+        fmt::format("edited texels cannot be shown by linear filtering: the textures are written for nearest "
+                    "sampling, {} times as fine; open the folder without linear",
+                    object.dialect.linear));
+    object.dialect.linear = 0;
+  }
   const Fitted fit = fitted(object, layout, baked_places, page_side, notes);
   const bool same_layout = object.origin && object.origin->layout == layout;
   const bool same_dialect = object.origin && object.origin->dialect == object.dialect;
@@ -233,7 +256,7 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
     const TextureSet* kept = i < fit.kept.size() ? &fit.kept[i] : nullptr;
     write_geometry(out, folder, layout, i, page.soup, object.origin.get(),
                    same_layout && kept != nullptr ? source_set(object, *kept, true) : nullptr);
-    write_texels(out, folder, layout, i, in_channel_order(page.texels, object.dialect), object.origin.get(),
+    write_texels(out, folder, layout, i, file_texels(page.texels, object.dialect), object.origin.get(),
                  same_names && kept != nullptr ? source_set(object, *kept, false) : nullptr);
   }
 

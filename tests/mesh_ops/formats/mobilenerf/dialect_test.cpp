@@ -14,6 +14,7 @@
 #include "mesh_ops/formats/mobilenerf/mlp_json.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/select/regions.h"
+#include "mesh_ops/texture/linear_filter.h"
 #include "tests/support/document_fixture.h"
 
 namespace rebake::test {
@@ -22,9 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 std::vector<Dialect> dialects() {
-  return {{true, false, false, {}},        {false, true, false, {}},
-          {false, false, true, {}},        {false, false, false, AlphaCode::plain},
-          {false, false, false, {}, true}, {true, true, true, AlphaCode::plain}};
+  return {{true, false, false, {}},           {false, true, false, {}},
+          {false, false, true, {}},           {false, false, false, AlphaCode::plain},
+          {false, false, false, {}, true},    {true, true, true, AlphaCode::plain},
+          {false, false, false, {}, false, 3}};
 }
 
 // What the decoder of a file returns in its dialect, by the definition of the dialect: eleven inputs, layer by layer.
@@ -63,6 +65,24 @@ TEST(Dialect, DecodersRoundTrip) {
   }
 }
 
+// Texels at the triangles' centres, which stay when an export packs the textures again, and how often they come.
+std::map<std::array<std::uint8_t, 8>, int> texels_at_centers(const BakedObject& object) {
+  std::map<std::array<std::uint8_t, 8>, int> counts;
+  for (const TextureSet& set : object.sets) {
+    const TexelReader reader(*set.texels);
+    for (const Face& face : set.soup.faces()) {
+      Vec2 center = Vec2::Zero();
+      for (const std::uint32_t vertex : face) center += set.soup.uvs()[vertex] / 3;
+      const Texel& texel = reader.sample(center.x(), center.y());
+      std::array<std::uint8_t, 8> bytes{};
+      std::copy(texel.feat0.begin(), texel.feat0.end(), bytes.begin());
+      std::copy(texel.feat1.begin(), texel.feat1.end(), bytes.begin() + 4);
+      ++counts[bytes];
+    }
+  }
+  return counts;
+}
+
 class DialectFolder : public DocumentTest {
  protected:
   // The published ball as a folder in a dialect.
@@ -71,6 +91,9 @@ class DialectFolder : public DocumentTest {
     scene = with_changed(scene, scene.roots[0]->id, [&](Node& node) {
       auto object = std::make_shared<BakedObject>(*node.object);
       object->dialect = dialect;
+      if (dialect.linear != 0)
+        for (TextureSet& set : object->sets)
+          set.texels = std::make_shared<const FeatureTexture>(subdivided(*set.texels, dialect.linear));
       node.object = object;
     });
     export_scene(scene, path("dialect"), {});
@@ -88,7 +111,7 @@ TEST_F(DialectFolder, ReadingUndoesWriting) {
     const auto read = read_baked_folder(written(dialect), {Axes::y_up, dialect});
     EXPECT_LE((read->decoder->bias0 - published_ball->decoder->bias0).cwiseAbs().maxCoeff(), 1e-15);
     EXPECT_EQ(read->decoder->weights0, published_ball->decoder->weights0);
-    if (dialect.no_holes) continue;
+    if (dialect.no_holes || dialect.linear != 0) continue;
     if (dialect.alpha)
       EXPECT_EQ(read->sets[0].texels->alpha_code(), AlphaCode::plain);
     else
@@ -152,6 +175,38 @@ TEST_F(DialectFolder, EditedFoldersKeepTheirDialect) {
   }
 }
 
+// Between an object's texels the picture shows their linear mixture, and exports write the texels themselves.
+TEST_F(DialectFolder, LinearFilteringKeepsTheTexelsOfTheFiles) {
+  const auto plain = read_baked_folder(path("sources/ball"), Axes::y_up);
+  const fs::path folder = written({.linear = 3});
+  const auto coarse = read_baked_folder(folder, Axes::y_up);
+  expect_texels(*coarse, *plain);
+  const auto fine = read_baked_folder(folder, {Axes::y_up, {.linear = 3}});
+  EXPECT_EQ(fine->sets[0].texels->width(), 3 * plain->sets[0].texels->width());
+  EXPECT_TRUE(is_subdivided(*fine->sets[0].texels, 3));
+}
+
+// An eraser clears single fine texels, which no coarse texture can show.
+TEST_F(DialectFolder, FoldersForLinearFilteringBecomeNearestWhenNeeded) {
+  const fs::path folder = written({.linear = 3});
+  Scene scene = read_any(folder, {Axes::y_up, {.linear = 3}});
+  scene = apply(scene, read_edit({{"op", "erase"}, {"sphere", {{"center", {0, 1, 0}}, {"radius", 0.3}}}}, scene)).scene;
+  const ExportReport report = export_scene(scene, path("edited"), {});
+  EXPECT_TRUE(std::any_of(report.notes.begin(), report.notes.end(), [](const std::string& note) {
+    return note.find("written for nearest sampling, 3 times as fine") != std::string::npos;
+  }));
+  const auto back = read_baked_folder(path("edited"), Axes::y_up);
+  EXPECT_TRUE(texels_at_centers(*back) == texels_at_centers(*scene.roots[0]->object));
+}
+
+TEST_F(DialectFolder, LinearTakesOddFactors) {
+  Document document;
+  for (const int factor : {0, 2, 4, 11})
+    EXPECT_THROW(
+        act(document, nlohmann::json{{"op", "import"}, {"path", path("sources/ball").string()}, {"linear", factor}}),
+        FieldError);
+}
+
 TEST_F(DialectFolder, RebakeScenesAreInThePublishedForm) {
   const Dialect dialect{true, true, true, AlphaCode::plain};
   const Scene scene = read_any(written(dialect), {Axes::y_up, dialect});
@@ -176,7 +231,7 @@ TEST_F(DialectFolder, ImportsAndProjectsKeepTheDialect) {
   EXPECT_EQ(document.scene().roots[0]->object->dialect, dialect);
   Document published_form;
   import(published_form);
-  for (const char* field : {"half_direction", "direction_first", "bgr", "alpha", "no_holes"})
+  for (const char* field : {"half_direction", "direction_first", "bgr", "alpha", "no_holes", "linear"})
     EXPECT_FALSE(to_json(published_form.history().edits()[0]).contains(field)) << "earlier versions do not know it";
   document.save(path("a.rebake"), {});
   const Scene opened = Document::open(path("a.rebake"), {}, {}).scene();
@@ -194,26 +249,9 @@ TEST_F(DialectFolder, OneFolderOfTwoDialectsIsPublished) {
   ASSERT_TRUE(report.one_folder);
   const Scene back = read_any(path("both"), Axes::y_up);
   EXPECT_EQ(back.roots[0]->object->triangle_count(), 2 * document.scene().roots[0]->object->triangle_count());
-  // Texels are repacked, so those at the triangles' centres are compared: each comes once per object.
-  const auto at_centers = [](const BakedObject& object) {
-    std::map<std::array<std::uint8_t, 8>, int> counts;
-    for (const TextureSet& set : object.sets) {
-      const TexelReader reader(*set.texels);
-      for (const Face& face : set.soup.faces()) {
-        Vec2 center = Vec2::Zero();
-        for (const std::uint32_t vertex : face) center += set.soup.uvs()[vertex] / 3;
-        const Texel& texel = reader.sample(center.x(), center.y());
-        std::array<std::uint8_t, 8> bytes{};
-        std::copy(texel.feat0.begin(), texel.feat0.end(), bytes.begin());
-        std::copy(texel.feat1.begin(), texel.feat1.end(), bytes.begin() + 4);
-        ++counts[bytes];
-      }
-    }
-    return counts;
-  };
-  auto expected = at_centers(*document.scene().roots[0]->object);
+  auto expected = texels_at_centers(*document.scene().roots[0]->object);
   for (auto& [texel, number] : expected) number *= 2;
-  EXPECT_TRUE(at_centers(*back.roots[0]->object) == expected);
+  EXPECT_TRUE(texels_at_centers(*back.roots[0]->object) == expected);
 }
 
 }  // namespace
