@@ -7,11 +7,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/photographs.h"
 
 namespace rebake {
 
@@ -21,6 +23,20 @@ namespace {
 bool holds_cameras(const std::filesystem::path& path) {
   const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
   return root.is_object() && (root.contains("frames") || root.contains("camera_path"));
+}
+
+// Cameras of photographs that exist can only be replaced by those of the same names: poses cannot be made again.
+void refuse_replacing_cameras(const std::filesystem::path& path, const std::vector<std::string>& names) {
+  const CameraFormat* format = camera_format_at(path);
+  if (format == nullptr) return;
+  std::vector<std::string> notes;
+  const std::vector<PhotoCamera> cameras = read_cameras(path, "", {}, notes);
+  if (capture_files(path, cameras).empty()) return;
+  const bool same = std::all_of(cameras.begin(), cameras.end(), [&](const PhotoCamera& camera) {
+    return std::find(names.begin(), names.end(), std::filesystem::path(camera.name).stem().string()) != names.end();
+  });
+  if (!same)
+    throw FileError(path, "has the cameras of photographs beside it, so it is not replaced; choose another name");
 }
 
 }  // namespace
@@ -43,6 +59,7 @@ void run(Session& session, const ExportViewsAction& action) {
   const std::vector<std::string> names = action.views.empty() ? view_names(scene) : action.views;
   if (names.empty()) throw FieldError("views", "is empty, and the scene has no stored views");
   std::vector<PhotoCamera> cameras;
+  refuse_replacing_cameras(action.out, names);
   for (const std::string& name : names)
     cameras.push_back(photo_camera(stored_view(scene, name, "views"), name + ".png", action.width, action.height));
   write_file_atomically(action.out, format.write(from_y_up(std::move(cameras), action.world.value_or(format.up))),

@@ -1,11 +1,7 @@
 #include "editor/actions/save_project.h"
 
 #include "editor/actions/describe_action.h"
-#include "editor/document/replaced_work.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <filesystem>
 
 namespace rebake {
@@ -13,16 +9,10 @@ namespace rebake {
 void run(Session& session, const SaveProjectAction& action) {
   if (std::filesystem::path(action.out).extension() != ".rebake")
     throw FieldError("out", "must end in .rebake, the extension of projects");
-  refuse_replacing_more(action.out, session.document.history().undo_count());
-  const std::vector<std::string> before = edits_in(action.out);
-  for (const std::string& warning : session.document.save(action.out, session.progress))
-    session.say("warning: " + warning);
+  const std::vector<std::string> warnings = session.document.save(action.out, session.progress);
   session.outputs.push_back(action.out);
   session.say("saved " + action.out);
-  const std::vector<std::string> after = edits_in(action.out);
-  const auto differs = std::mismatch(before.begin(), before.end(), after.begin(), after.end()).first;
-  if (differs != before.end())
-    session.say(fmt::format("note: it replaced a project with {} other edits", before.end() - differs));
+  for (const std::string& warning : warnings) session.say("warning: " + warning);
 }
 
 REBAKE_DESCRIBE_ACTION(

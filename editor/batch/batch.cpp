@@ -427,11 +427,9 @@ class BatchRun {
         set_quality_message(result, before.below_requested_psnr);
         return false;
       }
-      if (const std::string edited = options_.resume ? edited_output(before) : ""; !edited.empty()) {
+      if (const std::string edited = edited_output(before); !edited.empty()) {
         result.message = fmt::format(
-            "{} was changed after the batch wrote it, and would be replaced; move it elsewhere, or run without "
-            "--resume",
-            edited);
+            "{} was changed after the batch wrote it, and would be replaced; move it elsewhere, or remove it", edited);
         return false;
       }
       for (const BatchMark::File& output : before.wrote) claims_->release(output.path, result.name);
@@ -463,6 +461,8 @@ class BatchRun {
     const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
     if (!below && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
       result.message = last_error(state_file(result, ".log"), status);
+      if (const fs::path files = state_file(result, ".files"); fs::exists(files) && fs::exists(unfinished))
+        write_file_atomically(unfinished, read_file(files), {});  // outputs of the lines before the failure
       return;
     }
     if (key_of(options_, program_, script_, scenes_[job.scene]) != job.key) {
@@ -479,10 +479,11 @@ class BatchRun {
                                      output.path, other);
       }
     if (result.status == BatchResult::Status::done) {
-      write_file_atomically(state_file(result, ".done"),
-                            json{{"key", job.key + inputs_key(options_, scenes_[job.scene])}, {"below_asked", below}}.dump() +
-                                '\n' + files,
-                            {});
+      write_file_atomically(
+          state_file(result, ".done"),
+          json{{"key", job.key + inputs_key(options_, scenes_[job.scene])}, {"below_asked", below}}.dump() + '\n' +
+              files,
+          {});
       fs::remove(unfinished, error);
     }
   }

@@ -164,6 +164,10 @@ void train(const Options& options) {
   if (!options.out.empty()) {
     sources.check_file(options.out);
     refuse_replacing_work(options.out);
+    if (std::error_code error; std::filesystem::is_regular_file(options.out, error) &&
+                               std::filesystem::file_size(options.out, error) > 0 &&
+                               !is_transfer_model(read_file(options.out)))
+      throw FileError(options.out, "exists and is not a model, so it is not replaced; choose another name");
     const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
     if (!std::filesystem::is_directory(folder)) throw FieldError("out", "folder does not exist: " + folder.string());
   } else if (!result_cache()) {

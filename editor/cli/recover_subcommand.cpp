@@ -42,11 +42,14 @@ SourceLinks links_of(const std::vector<std::string>& pairs) {
   return links;
 }
 
+Document::OtherProject other_project(const Recovery& options) {
+  return options.replace ? Document::OtherProject::keep_more : Document::OtherProject::keep;
+}
+
 // Saves a project with moved sources again, with their new paths.
 void relink_project(const Recovery& options) {
-  const Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
-  if (options.replace) refuse_replacing_more(options.out, document.history().undo_count());
-  const std::vector<std::string> warnings = document.save(options.out, progress_bar());
+  Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
+  const std::vector<std::string> warnings = document.save(options.out, progress_bar(), other_project(options));
   clear_progress_bar();
   for (const std::string& warning : warnings) print_message("warning: " + warning);
   const std::size_t edits = document.history().undo_count();
@@ -71,9 +74,8 @@ void recover(const Recovery& options) {
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
   // An empty project would block the next attempt.
   const bool nothing = recovered.edits == 0;
-  if (!nothing && options.replace) refuse_replacing_more(options.out, recovered.edits);
   if (!nothing)
-    for (const std::string& warning : recovered.document.save(options.out, progress_bar()))
+    for (const std::string& warning : recovered.document.save(options.out, progress_bar(), other_project(options)))
       print_message("warning: " + warning);
   clear_progress_bar();
   const std::size_t undone = recovered.document.history().redo_count();
@@ -86,13 +88,15 @@ void recover(const Recovery& options) {
              nothing ? "; no project is written" : " into " + printable(options.out));
   if (std::fflush(stdout) != 0 && !nothing)
     throw FileError(options.out, "is written, but standard output is not writable; the journal stays");
-  if (undone > 0) print_message(fmt::format("note: {} undone edits are not part of the project", undone));
+  if (undone > 0)
+    print_message(fmt::format(
+        "note: {} undone edits are not part of the project; the journal still holds them, so it stays", undone));
   if (recovered.header_damaged)
     print_message("note: the journal's first line is damaged; all edits after it are intact");
   if (recovered.torn) print_message("note: the last edit is lost: the program ended while it was written");
   if (recovered.lost.empty()) {
     // The project is on the disk now.
-    if (options.keep) return;
+    if (options.keep || undone > 0) return;
     if (recovered.journal)
       recovered.journal->discard();
     else

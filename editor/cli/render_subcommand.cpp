@@ -135,28 +135,6 @@ void refuse_replacing_capture(const std::filesystem::path& file, const std::file
     throw FileError(file, "exists in the capture's folder, or is a link; name a new folder for the pictures");
 }
 
-// Protects the photographs of captures that a folder for pictures belongs to.
-void protect_captures_at(const std::filesystem::path& folder, SourceGuard& sources) {
-  std::error_code error;
-  const std::filesystem::path whole = std::filesystem::weakly_canonical(folder, error);
-  std::vector<std::filesystem::path> cameras{whole, whole.parent_path(), whole.parent_path().parent_path()};
-  // Also files of other names, such as transforms_train.json.
-  for (const std::filesystem::path& place : std::vector(cameras))
-    for (auto entry = std::filesystem::directory_iterator(place, error); !error && entry != std::filesystem::end(entry);
-         entry.increment(error))
-      if (entry->path().extension() == ".json") cameras.push_back(entry->path());
-  for (const std::filesystem::path& place : cameras) {
-    if (!std::filesystem::exists(place, error) || camera_format_at(place) == nullptr) continue;
-    try {
-      std::vector<std::string> notes;
-      for (const std::filesystem::path& file : capture_files(place, read_cameras(place, "", {}, notes)))
-        sources.add_file(file, "a file of the capture there");
-    } catch (const Error&) {
-      // Unreadable cameras tell nothing about photographs.
-    }
-  }
-}
-
 // Writes a picture for each camera of a file into a folder, named after the photographs.
 void render_photographs(const Rendering& options) {
   check_photograph_options(options);

@@ -121,6 +121,14 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
   return variables;
 }
 
+// Writes the list of --list-files.
+void write_list(const Session& session, const RunOptions& options, const std::string& script,
+                const std::map<std::string, std::string>& variables) {
+  if (options.files.empty()) return;
+  check_list(options.files);  // once more: the script may have written this file
+  write_file_atomically(options.files, file_list(session, script, variables), session.document.sources());
+}
+
 // Runs the script, exports and lists files as the options say.
 void run_lines(Session& session, const RunOptions& options, const std::string& script,
                const std::map<std::string, std::string>& variables) {
@@ -133,11 +141,10 @@ void run_lines(Session& session, const RunOptions& options, const std::string& s
       action.out = options.out;
       run(session, action);
     }
-    if (!options.files.empty()) {
-      check_list(options.files);  // once more: the script may have written this file
-      write_file_atomically(options.files, file_list(session, script, variables), session.document.sources());
-    }
+    write_list(session, options, script, variables);
   } catch (const Error&) {
+    // Its outputs are there, and a batch must know them.
+    if (!session.exports.empty() || !session.outputs.empty()) write_list(session, options, script, variables);
     if (!options.journal.empty())
       session.say(fmt::format("the edits so far are in {0}; to recover them: rebake recover {0} -o FILE.rebake",
                               options.journal));

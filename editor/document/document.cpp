@@ -7,7 +7,9 @@
 
 #include "editor/document/project.h"
 #include "editor/document/replaced_work.h"
+#include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 
 namespace rebake {
 
@@ -38,6 +40,7 @@ Document::Document(Scene start, std::uint64_t memory_budget)
 Document Document::open(const fs::path& project, const SourceLinks& links, const Progress& progress,
                         std::uint64_t memory_budget) {
   Document document({}, memory_budget);
+  document.projects_[fs::weakly_canonical(project)] = content_hash(read_file(project));
   read_project(
       project,
       [&](const History::Entry& entry, const Scene& after) {
@@ -185,6 +188,17 @@ std::vector<std::string> Document::Recovered::first_lost() const {
 }
 
 SourceGuard Document::sources() const {
+  SourceGuard guard = own_sources();
+  guard.add_all(others_, "a source of another open document");
+  return guard;
+}
+
+void Document::protect_sources_of_others(const std::vector<SourceGuard>& others) {
+  others_ = {};
+  for (const SourceGuard& other : others) others_.add_all(other, "a source of another open document");
+}
+
+SourceGuard Document::own_sources() const {
   SourceGuard guard = imported_;
   add_sources(guard, scene());
   if (journal_) guard.add_file(journal_->path(), "the journal of this document");
@@ -301,14 +315,40 @@ bool Document::redo_step(const Progress& progress) {
   return history_.redo_count() > 0 && redo(history_.redo_step(), progress);
 }
 
-std::vector<std::string> Document::save(const fs::path& project, const Progress& progress) const {
-  if (!starts_empty_)
-    throw Error("the document did not begin empty, so it cannot be saved as a project: import its contents instead");
+void Document::check_project(const fs::path& project, OtherProject other) const {
   Journal::refuse_overwriting(project);
   refuse_replacing_foreign(project);
+  if (other == OtherProject::replace || !fs::exists(project)) return;
+  const auto known = projects_.find(fs::weakly_canonical(project));
+  if (known == projects_.end()) {
+    if (other == OtherProject::keep) throw FileError(project, "already exists; choose another name, or use --replace");
+    refuse_replacing_more(project, history_.undo_count());
+  } else if (known->second != content_hash(read_file(project))) {
+    throw FileError(
+        project,
+        "was changed by another program after it was opened or saved here; save under another name, or open "
+        "it again");
+  }
+}
+
+std::vector<std::string> Document::save(const fs::path& project, const Progress& progress, OtherProject other) {
+  if (!starts_empty_)
+    throw Error("the document did not begin empty, so it cannot be saved as a project: import its contents instead");
   std::vector<History::Entry> entries = history_.entries();
   entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(history_.undo_count()), entries.end());
-  return write_project(project, entries, sources(), progress);
+  // Two programs that save to one project do so one after the other, so that the second sees what the first wrote.
+  const FolderLock lock(project.parent_path());
+  check_project(project, other);
+  const bool is_known = projects_.contains(fs::weakly_canonical(project));
+  const std::vector<std::string> before =
+      is_known || other != OtherProject::keep_more ? std::vector<std::string>() : edits_in(project);
+  std::vector<std::string> warnings = write_project(project, entries, sources(), progress);
+  projects_[fs::weakly_canonical(project)] = content_hash(read_file(project));
+  const std::vector<std::string> after = before.empty() ? before : edits_in(project);
+  if (const auto differs = std::mismatch(before.begin(), before.end(), after.begin(), after.end()).first;
+      differs != before.end())
+    warnings.push_back(fmt::format("it replaced a project with {} other edits", before.end() - differs));
+  return warnings;
 }
 
 void Document::discard_journal() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -34,6 +35,10 @@ class Document {
   /// Files that no output may overwrite: all imports (undone ones too), the origins of the scene's objects, the
   /// journal, and the inputs that were added below.
   SourceGuard sources() const;
+  /// As sources(), without those of other documents.
+  SourceGuard own_sources() const;
+  /// Protects the own_sources() of other documents of this process; replaces earlier ones.
+  void protect_sources_of_others(const std::vector<SourceGuard>& others);
   /// Protects a folder or file from being overwritten: protect_input() (scene_files.h).
   void protect_input(const std::filesystem::path& source, const std::string& role) {
     ::rebake::protect_input(imported_, source, role);
@@ -79,19 +84,33 @@ class Document {
   bool undo_step(const Progress& progress = {});
   bool redo_step(const Progress& progress = {});
 
-  /// Writes the project. Returns a warning for each missing or changed source, without which the project cannot be
-  /// opened. Throws FileError.
-  std::vector<std::string> save(const std::filesystem::path& project, const Progress& progress = {}) const;
+  /// Treatment of a project at the path of save() that this document neither opened nor saved.
+  enum class OtherProject {
+    keep_more,  ///< throw FileError if it has more edits than this document, else replace it with a warning
+    keep,       ///< throw FileError
+    replace     ///< replace it; for people who have confirmed it
+  };
+  /// Writes the project. Returns warnings: for each missing or changed source, without which the project cannot be
+  /// opened, and for replaced edits. Throws FileError, also if the file was changed after this document opened or saved
+  /// it (unless `other` is replace), and if it exists and is no project.
+  std::vector<std::string> save(const std::filesystem::path& project, const Progress& progress = {},
+                                OtherProject other = OtherProject::keep_more);
   /// Ends and removes the journal, after the work was saved or given up.
   void discard_journal();
 
  private:
   std::vector<Report> add_to_history(AppliedEdits done, std::size_t replaced = 0);
 
+  /// Refuses to replace a project that may hold other work; see save().
+  void check_project(const std::filesystem::path& project, OtherProject other) const;
+
   bool starts_empty_;  ///< the history began with an empty scene, so that edits alone restore it
   History history_;
   SourceGuard imported_;  ///< also of edits that history has forgotten: a journal replays them
+  SourceGuard others_;    ///< sources of other documents
   std::optional<Journal> journal_;
+  /// Projects that were opened or saved: canonical path → hash of the contents.
+  std::map<std::filesystem::path, std::uint64_t> projects_;
 };
 
 /// Result of Document::recover().

@@ -8,6 +8,9 @@
 #include "editor/document/project.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/source_guard.h"
+#include "mesh_ops/formats/cameras/photographs.h"
+#include "mesh_ops/formats/formats.h"
 
 namespace rebake {
 
@@ -23,6 +26,16 @@ void refuse_replacing_work(const fs::path& path) {
   // Reading large pictures only to look for a project would be slow; projects have their extension.
   if (is_project_file(path) && holds_project(path))
     throw FileError(path, "is a project, whose edits would be lost; name another file");
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return;
+  const fs::path folder = absolute_path(path).parent_path();
+  if (const Format* format = format_at(folder))
+    for (const fs::path& file : format->files(folder))
+      if (fs::equivalent(folder / file, path, error))
+        throw FileError(path, "is a file of the scene in its folder; name another file");
+  SourceGuard captures;
+  protect_captures_at(folder, captures);
+  captures.check_file(path);
 }
 
 void refuse_replacing_foreign(const fs::path& path) {

@@ -10,7 +10,8 @@ namespace rebake {
 /// Whether a file is a project, even a damaged one or one of a newer version.
 bool holds_project(const std::filesystem::path& path);
 
-/// For outputs that are no projects: throws FileError if the file is a journal or a project, whose edits would be lost.
+/// For outputs that are no projects: throws FileError if the file is a journal or a project, whose edits would be lost,
+/// a file of a scene folder, or a photograph or mask of a capture.
 void refuse_replacing_work(const std::filesystem::path& path);
 
 /// For every project that is written: throws FileError if the file exists and is no project, or one of a newer version.

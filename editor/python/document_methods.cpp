@@ -155,6 +155,12 @@ void add_edit_methods(py::class_<PyDocument>& type) {
 
 }  // namespace
 
+LiveDocuments& live_documents() {
+  // Never destroyed: documents may outlive the module's statics at exit.
+  static auto* const documents = new LiveDocuments;
+  return *documents;
+}
+
 void add_document_methods(py::class_<PyDocument>& type) {
   type.def_property_readonly("nodes", &nodes_of, "Every node: id, name, parent, visible, locked, triangles, to_world.");
   type.def_readwrite(
@@ -170,10 +176,7 @@ void add_document_methods(py::class_<PyDocument>& type) {
             run(session, SaveAction{path.string()});
             return;
           }
-          if (absolute_path(path) != document.project)
-            refuse_replacing_more(path, session.document.history().undo_count());
           warnings = session.document.save(path, session.progress);
-          document.project = absolute_path(path);
         });
         for (const std::string& warning : warnings)
           if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();

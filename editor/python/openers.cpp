@@ -55,7 +55,6 @@ std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, con
   });
   auto document = std::make_unique<PyDocument>(std::move(*opened));
   document->progress = callback;
-  if (is_project_file(path)) document->project = absolute_path(path);
   return document;
 }
 

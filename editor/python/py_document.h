@@ -2,39 +2,77 @@
 
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <vector>
 
 #include "editor/actions/session.h"
+#include "editor/edits/nodes/import.h"
 #include "editor/python/work.h"
 
 namespace rebake {
 
 namespace py = pybind11;
 
+class PyDocument;
+
+/// Sources of all documents of the process: no output of one may replace a source of another. Thread-safe.
+class LiveDocuments {
+ public:
+  void publish(const PyDocument* document, SourceGuard sources) {
+    const std::scoped_lock lock(mutex_);
+    sources_[document] = std::move(sources);
+  }
+  void forget(const PyDocument* document) {
+    const std::scoped_lock lock(mutex_);
+    sources_.erase(document);
+  }
+  std::vector<SourceGuard> sources_of_others(const PyDocument* document) {
+    const std::scoped_lock lock(mutex_);
+    std::vector<SourceGuard> others;
+    for (const auto& [other, sources] : sources_)
+      if (other != document && !sources.empty()) others.push_back(sources);
+    return others;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<const PyDocument*, SourceGuard> sources_;
+};
+LiveDocuments& live_documents();
+
 /// A session that Python may use from any thread. All access releases the GIL before it locks the mutex. Readers copy
 /// the scene, which is cheap.
 class PyDocument {
  public:
-  PyDocument() = default;
-  explicit PyDocument(Document document) { session_.document = std::move(document); }
+  PyDocument() { publish_sources(); }
+  explicit PyDocument(Document document) {
+    session_.document = std::move(document);
+    publish_sources();
+  }
+  ~PyDocument() { live_documents().forget(this); }
+  PyDocument(const PyDocument&) = delete;
+  PyDocument& operator=(const PyDocument&) = delete;
 
   py::object progress = py::none();  ///< progress callback, or None
-  std::filesystem::path project;     ///< project file that was opened or saved last; empty: none
 
   /// Runs `job` with run_without_gil(). If the callback uses this document, it waits until the job is done.
   void work(const std::function<void(Session&)>& job) {
     run_without_gil(progress, [&](const Progress& on_the_way) {
       const std::scoped_lock lock(mutex_);
       session_.progress = on_the_way;
+      session_.document.protect_sources_of_others(live_documents().sources_of_others(this));
       try {
         job(session_);
       } catch (...) {
         session_.progress = {};
+        publish_sources();
         throw;
       }
       session_.progress = {};
+      publish_sources();
     });
   }
 
@@ -58,6 +96,14 @@ class PyDocument {
   }
 
  private:
+  // A document of imports alone loses nothing when they are replaced.
+  void publish_sources() {
+    const std::vector<Edit> edits = session_.document.history().edits();
+    const bool any = session_.document.history().redo_count() > 0 ||
+                     std::any_of(edits.begin(), edits.end(), [](const Edit& edit) { return !edit.is<Import>(); });
+    live_documents().publish(this, any ? session_.document.own_sources() : SourceGuard());
+  }
+
   std::mutex mutex_;
   Session session_;
 };

@@ -22,4 +22,17 @@ class FileLock {
   bool held_;
 };
 
+/// Exclusive lock on a folder among processes, which waits until it is free. Without effect for folders that cannot be
+/// opened and on file systems without locks.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int folder_;
+};
+
 }  // namespace rebake

@@ -337,14 +337,14 @@ void remove_file(const fs::path& path) {
 
 AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
                            const std::function<void(const fs::path&)>& may_replace)
-    : guard_(guard) {
+    : guard_(guard), may_replace_(may_replace) {
   if (target.empty()) throw FieldError("out", "is empty; name a folder to write to");
   guard.check_folder(target);
   target_ = followed(target);
   std::error_code error;
   if (fs::exists(target_, error)) {
     if (!fs::is_directory(target_)) throw FileError(target_, "is a file; name a folder to write to");
-    may_replace(target_);
+    may_replace_(target_);
     refuse_replacing_folder(target_);
   }
   make_folders(target_.parent_path());
@@ -378,6 +378,14 @@ void AtomicFolder::write_in_pieces(const fs::path& relative, const std::function
   write_synced(path, O_TRUNC, make);
 }
 
+void AtomicFolder::check_replaced(const fs::path& path) const {
+  try {
+    may_replace_(path);
+  } catch (const FileError&) {
+    throw FileError(target_, "received other files while the new contents were written; choose a new or empty folder");
+  }
+}
+
 void AtomicFolder::commit() {
   PartialWrite::committing().unlock();  // blocks forever after abandon_writes()
   // Subfolders are synced before the folders that contain them, and all of them before the rename.
@@ -392,11 +400,19 @@ void AtomicFolder::commit() {
   if (fs::exists(target_)) {
     // One system call exchanges old and new; the destructor removes the old folder, now at the staging path.
     if (file_calls().rename(staging_.c_str(), target_.c_str(), RENAME_EXCHANGE) == 0) {
+      // Other programs may have written files there since the check at the beginning.
+      try {
+        check_replaced(staging_);
+      } catch (...) {
+        if (file_calls().rename(staging_.c_str(), target_.c_str(), RENAME_EXCHANGE) != 0) staging_.clear();
+        throw;
+      }
       old = staging_;
     } else {
       if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be replaced");
       // Two renames if the file system cannot exchange; between them, the old folder is at `aside`.
       const fs::path aside = staging_.string() + ".old";  // not named like a leftover: it may be the only copy
+      check_replaced(target_);
       if (file_calls().rename(target_.c_str(), aside.c_str(), 0) != 0) fail(target_, "cannot be replaced");
       if (file_calls().rename(staging_.c_str(), target_.c_str(), 0) != 0) {
         const int error = errno;

@@ -90,11 +90,15 @@ class AtomicFolder {
   /// As write(), for contents that are generated in pieces: `make` calls `append` with each piece.
   using Append = std::function<void(std::string_view bytes)>;
   void write_in_pieces(const std::filesystem::path& relative, const std::function<void(const Append& append)>& make);
-  /// Moves the folder into place. Throws FileError.
+  /// Moves the folder into place. Throws FileError, also if the target's contents must not be lost by now.
   void commit();
 
  private:
+  /// Throws FileError if the folder at `path`, which was the target, must not be lost.
+  void check_replaced(const std::filesystem::path& path) const;
+
   SourceGuard guard_;
+  std::function<void(const std::filesystem::path&)> may_replace_;
   std::filesystem::path target_;
   std::filesystem::path staging_;
   std::unique_ptr<PartialWrite> partial_;

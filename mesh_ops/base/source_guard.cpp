@@ -112,6 +112,18 @@ void SourceGuard::add_contents(const fs::path& folder, const std::string& role, 
   if (add_source({path, true, role, identity_of(path), true, {}})) add_link_targets(path, is_scene, path);
 }
 
+void SourceGuard::add_all(const SourceGuard& other, const std::string& role) {
+  for (Source source : other.sources_) {
+    source.role = role;
+    source.replaceable = false;
+    source.owner.clear();
+    // What is known keeps its role.
+    for (const Source& known : sources_)
+      if (known.path == source.path && known.is_folder == source.is_folder) source.role = known.role;
+    add_source(std::move(source));
+  }
+}
+
 void SourceGuard::release_contents(const fs::path& folder) {
   const fs::path path = plain_path(folder);
   std::erase_if(sources_, [&](const Source& source) {

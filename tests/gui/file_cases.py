@@ -55,6 +55,17 @@ class FileTest(WindowCase):
         editor.tool("click", 1)
         self.assertEqual(editor.process.wait(20), 0)
 
+    def test_a_project_of_which_everything_was_deleted_is_saved(self):
+        project = self.folder / "empty.rebake"
+        editor = self.open(FICUS)
+        editor.until_ops("import")
+        editor.key("ctrl+a", "Delete")
+        editor.until_ops("import", "select", "delete")
+        editor.key("ctrl+s")
+        editor.click("dialog/path")
+        editor.answer(str(project))
+        until(project.is_file, "the project", 20)
+
     def test_what_was_opened_before_has_a_picture(self):
         self.open_ficus()
         kept = self.screen.home / "cache" / "rebake" / "pictures"

@@ -157,6 +157,30 @@ class Module(unittest.TestCase):
         opened.save(self.at / "p.rebake")
         self.assertEqual(rebake.open(self.at / "p.rebake").edits(), [])
 
+    def test_documents_do_not_replace_the_sources_of_others(self):
+        source = str(self.at / "source")
+        rebake.open(FICUS).export(source)
+        reader, writer = rebake.open(source), rebake.open(FICUS)
+        writer.export(source)  # a document without edits loses nothing
+        reader = rebake.open(source)
+        reader.rename(node=reader.nodes[0]["name"], name="edited")
+        for write in (writer.save, lambda out: writer.export(out)):
+            with self.assertRaisesRegex(rebake.Error, "a source of another open document"):
+                write(source)
+        del reader
+        writer.export(source)
+
+    def test_saving_keeps_what_was_saved_meanwhile(self):
+        path = str(self.at / "shared.rebake")
+        rebake.open(FICUS).save(path)
+        one, other = rebake.open(path), rebake.open(path)
+        for name in ("a", "b"):
+            one.rename(node=one.nodes[0]["name"], name=name)
+        one.save(path)
+        with self.assertRaisesRegex(rebake.Error, "was changed by another program"):
+            other.save(path)
+        self.assertEqual(len(rebake.open(path).edits()), 3)
+
     def test_green_coordinates_warn_of_points_outside(self):
         vertices = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
         faces = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],

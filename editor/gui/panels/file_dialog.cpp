@@ -118,7 +118,9 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
         open_paths(editor, {path.string()});
       break;
     case FileDialogPurpose::save_project:
-      editor.project.save(path);
+      // Replacing another project was confirmed.
+      editor.project.save(
+          path, path == editor.project.path ? Document::OtherProject::keep_more : Document::OtherProject::replace);
       break;
     case FileDialogPurpose::save_scene:
       editor.project.save_scene(path);

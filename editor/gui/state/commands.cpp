@@ -35,6 +35,7 @@ namespace {
 
 bool always(const EditorContext&) { return true; }
 bool has_scene(const EditorContext& editor) { return !editor.scene().roots.empty(); }
+bool has_steps(const EditorContext& editor) { return has_scene(editor) || !editor.now->done.empty(); }
 bool has_views(const EditorContext& editor) { return editor.scene().views.size() > 1; }
 bool has_active(const EditorContext& editor) { return !editor.active.empty(); }
 bool has_selection(const EditorContext& editor) { return editor.selected_triangles() > 0; }
@@ -234,8 +235,8 @@ const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
       {"File", "Open...", "Ctrl+O", "Ctrl+O", "Opens a scene, a textured mesh or a project.", always,
        ask<FileDialogPurpose::open>},
-      {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_scene, save},
-      {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", "Saves every step to another file.", has_scene,
+      {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_steps, save},
+      {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", "Saves every step to another file.", has_steps,
        ask<FileDialogPurpose::save_project>},
       {"File", "Save Rebake scene...", "", "", "Writes the current scene to a folder, without its history.", has_scene,
        ask<FileDialogPurpose::save_scene>},

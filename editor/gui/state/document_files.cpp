@@ -153,13 +153,13 @@ void Project::relink(bool go_on_without) {
   recover(wanted.needed_by, links, go_on_without);
 }
 
-void Project::save(const fs::path& file) {
+void Project::save(const fs::path& file, Document::OtherProject other) {
   auto saved = std::make_shared<Scene>();
   auto warnings = std::make_shared<std::vector<std::string>>();
   worker_.start(
       "saving",
-      [file, saved, warnings](Session& session) {
-        *warnings = session.document.save(file, session.progress);
+      [file, other, saved, warnings](Session& session) {
+        *warnings = session.document.save(file, session.progress, other);
         *saved = session.scene();
       },
       [this, file, saved, warnings] {

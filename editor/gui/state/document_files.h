@@ -57,7 +57,7 @@ class Project {
   /// Opens or recovers again with the answers in `relinking`, and closes the question. `go_on_without`: as for
   /// recover().
   void relink(bool go_on_without);
-  void save(const std::filesystem::path& file);
+  void save(const std::filesystem::path& file, Document::OtherProject other = Document::OtherProject::keep_more);
   void save_scene(const std::filesystem::path& folder);
   void export_scene(const ExportAction& action);
   void save_script(const std::filesystem::path& file);

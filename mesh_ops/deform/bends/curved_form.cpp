@@ -11,24 +11,14 @@ namespace rebake {
 
 namespace {
 
-// Pieces of a segment that starts at `origin` and has the direction `along`. A rotation about `turn` that is not
-// perpendicular to the segment splits into a bend and a twist about the segment.
-void add_bend(std::vector<CurvedForm::Piece>& pieces, CurvedForm::Piece piece, const Vec3& along, const Vec3& turn) {
+// The piece of a segment with the direction `along`, for rotations about `turn`.
+CurvedForm::Piece bend_of(CurvedForm::Piece piece, const Vec3& along, const Vec3& turn) {
   constexpr double rounding = 1e-14;  // rounding of products of unit vectors
-  const double angle = piece.form.radians, twisted = turn.dot(along);
-  const Vec3 across = turn - twisted * along;
-  const double bent = across.norm();
-  if (std::abs(twisted) > rounding) {
-    CurvedForm::Piece twist = piece;
-    twist.form.kind = ClosedForm::Kind::twist;
-    twist.form.radians = angle * twisted;
-    pieces.push_back(twist);
-  }
-  if (bent > rounding) {
-    piece.form.radians = angle * bent;
-    piece.form.direction = across.cross(along);
-    pieces.push_back(piece);
-  }
+  if (std::abs(turn.dot(along)) > rounding)
+    piece.turn = turn;
+  else
+    piece.form.direction = turn.cross(along);
+  return piece;
 }
 
 std::vector<bool> opposed_segments(const std::vector<Vec3>& spine) {
@@ -93,6 +83,30 @@ Deformed deform_after(const ClosedForm& form, const Position& at, const Deformed
   return {so_far.point + frame.transpose() * motion, jacobian};
 }
 
+// A segment whose points at `inside` rotate about `turn` by an angle proportional to it, so that the segment becomes a
+// helix: its tangent is the rotated segment.
+Deformed deform_after_helix(const CurvedForm::Piece& piece, const Position& at, const Deformed& so_far) {
+  const ClosedForm& form = piece.form;
+  const double passed = at.inside - form.from, rate = form.radians / (form.to - form.from);
+  if (passed == 0 || rate == 0) return so_far;
+  const Vec3 &turn = piece.turn, along = form.axis.stableNormalized(), sideways = turn.cross(along);
+  const Vec3 across = sideways.cross(turn);  // the part of `along` that is perpendicular to `turn`
+  const double angle = rate * passed, sine = elementary::sine_cosine(angle).sine,
+               half = elementary::sine_cosine(angle / 2).sine, versine = 2 * half * half;
+  const auto rotation_motion = [&](const auto& v) {
+    return (sine * turn.cross(v) + versine * turn.cross(turn.cross(v))).eval();
+  };
+  const Vec3 from_segment = so_far.point - form.origin - at.inside * along;
+  const Vec3 motion = across * (sine / rate - passed) + sideways * (versine / rate) + rotation_motion(from_segment);
+  Mat3 jacobian = so_far.jacobian;
+  for (int column = 0; column < 3; ++column) jacobian.col(column) += rotation_motion(Vec3(so_far.jacobian.col(column)));
+  if (at.within) {
+    const Vec3 rotated = from_segment + rotation_motion(from_segment);
+    jacobian += rate * turn.cross(rotated) * along.transpose();
+  }
+  return {so_far.point + motion, jacobian};
+}
+
 }  // namespace
 
 CurvedForm along_curve(const ClosedForm& form, const std::vector<Vec3>& spine) {
@@ -116,11 +130,7 @@ CurvedForm along_curve(const ClosedForm& form, const std::vector<Vec3>& spine) {
     piece.form.to = std::min(form.to - begins, length);
     if (!(piece.form.from < piece.form.to)) continue;
     piece.form.radians = form.radians * ((piece.form.to - piece.form.from) / (form.to - form.from));
-    if (bends) {
-      add_bend(result.pieces, piece, way / length, turn);
-    } else {
-      result.pieces.push_back(piece);
-    }
+    result.pieces.push_back(bends ? bend_of(piece, way / length, turn) : piece);
   }
   if (result.pieces.empty())
     throw FieldError("spine", "ends before the deformation begins; lower from or lengthen the spine");
@@ -131,7 +141,8 @@ CurvedForm along_curve(const ClosedForm& form, const std::vector<Vec3>& spine) {
 }
 
 Deformed deform(const CurvedForm& form, const Vec3& point) {
-  if (form.pieces.size() == 1 && form.opposed.empty()) return deform(form.pieces.front().form, point);
+  if (form.pieces.size() == 1 && form.opposed.empty() && form.pieces.front().turn.isZero(0))
+    return deform(form.pieces.front().form, point);
   const std::size_t segments = form.spine.size() - 1;
   const std::size_t nearest = form.opposed.empty() ? 0 : nearest_segment(form.spine, point);
   Deformed result{point, Mat3::Identity()};
@@ -145,7 +156,7 @@ Deformed deform(const CurvedForm& form, const Vec3& point) {
       at.inside = std::clamp(along, one.from, one.to);
       at.within = along > one.from && along < one.to;
     }
-    result = deform_after(one, at, result);
+    result = piece.turn.isZero(0) ? deform_after(one, at, result) : deform_after_helix(piece, at, result);
   }
   return result;
 }

@@ -6,12 +6,14 @@
 
 namespace rebake {
 
-/// A bend, twist or stretch along a polyline: one closed form per straight segment, two where a bend has a part about
-/// the segment itself. Everything beyond a segment follows it.
+/// A bend, twist or stretch along a polyline: one closed form per straight segment. Everything beyond a segment follows
+/// it.
 struct CurvedForm {
   struct Piece {
     ClosedForm form;          ///< its `from` and `to` are measured from the segment's start
     std::size_t segment = 0;  ///< index of the segment: from spine[segment] to spine[segment + 1]
+    /// Unit axis of a bend that is not perpendicular to the segment, which then becomes a helix; else zero.
+    Vec3 turn = Vec3::Zero();
   };
   std::vector<Vec3> spine;
   std::vector<Piece> pieces;  ///< in the order in which deform() applies them, the last segment first
@@ -22,9 +24,8 @@ struct CurvedForm {
 /// `form` along `spine`. `form.from` and `form.to` are arc lengths from the spine's first point. Throws FieldError for
 /// tapers, for fewer than two points, for points that coincide or are not finite, and for a spine shorter than
 /// `form.from`.
-/// All bends rotate about one direction, perpendicular to the form's axis and direction. That is exact if the curve is
-/// perpendicular to it too, otherwise up to products of the angles of one segment. For a straight spine this is the
-/// form itself.
+/// All bends rotate about one direction, perpendicular to the form's axis and direction, so their angles add up. For a
+/// straight spine perpendicular to it this is the form itself.
 CurvedForm along_curve(const ClosedForm& form, const std::vector<Vec3>& spine);
 
 /// The position along a segment is that of the undeformed point, projected. Segments that point back, by more than 90°

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/source_guard.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/mask_images.h"
 
 namespace rebake {
@@ -68,6 +71,26 @@ std::vector<fs::path> capture_files(const fs::path& camera_file, const std::vect
     for (const PhotoCamera& camera : cameras) add(existing(place, camera.name));
   for (const fs::path& mask : mask_files(cameras, folder, folder / "masks")) add(mask);
   return files;
+}
+
+void protect_captures_at(const fs::path& folder, SourceGuard& sources) {
+  std::error_code error;
+  const fs::path whole = fs::weakly_canonical(folder, error);
+  std::vector<fs::path> cameras{whole, whole.parent_path(), whole.parent_path().parent_path()};
+  // Also files of other names, such as transforms_train.json.
+  for (const fs::path& place : std::vector(cameras))
+    for (auto entry = fs::directory_iterator(place, error); !error && entry != fs::end(entry); entry.increment(error))
+      if (entry->path().extension() == ".json") cameras.push_back(entry->path());
+  for (const fs::path& place : cameras) {
+    if (!fs::exists(place, error) || camera_format_at(place) == nullptr) continue;
+    try {
+      std::vector<std::string> notes;
+      for (const fs::path& file : capture_files(place, read_cameras(place, "", {}, notes)))
+        sources.add_file(file, "a file of the capture there");
+    } catch (const Error&) {
+      // Unreadable cameras tell nothing about photographs.
+    }
+  }
 }
 
 }  // namespace rebake

@@ -8,6 +8,8 @@
 
 namespace rebake {
 
+class SourceGuard;
+
 /// The photograph with this name in a folder; its extension may be missing. Empty if it is not there, or if the name
 /// leaves the folder.
 std::filesystem::path photograph_at(const std::filesystem::path& folder, const std::string& name);
@@ -19,5 +21,8 @@ std::filesystem::path capture_folder(const std::filesystem::path& camera_file);
 /// The photographs and masks of a capture that exist, also outside its folder, to be protected from being overwritten.
 std::vector<std::filesystem::path> capture_files(const std::filesystem::path& camera_file,
                                                  const std::vector<PhotoCamera>& cameras);
+
+/// Protects the photographs and masks of captures whose camera files lie in a folder, or in the two folders around it.
+void protect_captures_at(const std::filesystem::path& folder, SourceGuard& sources);
 
 }  // namespace rebake

@@ -190,6 +190,11 @@ UnetTransfer::State read_net_head(const nlohmann::json& head, std::size_t file_s
 
 }  // namespace
 
+bool is_transfer_model(std::string_view bytes) {
+  const auto head = nlohmann::json::parse(bytes.substr(0, bytes.find('\n')), nullptr, false);
+  return head.is_object() && head.contains("kind") && head.contains("poses_from");
+}
+
 TransferModel transfer_model_of(std::string_view bytes) {
   std::uint64_t hash = 0;
   const std::size_t line = bytes.find('\n');

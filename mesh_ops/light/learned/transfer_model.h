@@ -34,6 +34,8 @@ struct TransferModel {
 std::string bytes_of(const TransferModel& model);
 /// Parses the serialised form. Throws Error that states the fault.
 TransferModel transfer_model_of(std::string_view bytes);
+/// Whether a file is a transfer model of any version, even a damaged one.
+bool is_transfer_model(std::string_view bytes);
 
 /// Cache key of a body's model (Results).
 std::string transfer_model_key(const BakedObject& body, std::size_t sites);

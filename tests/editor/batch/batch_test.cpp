@@ -119,8 +119,25 @@ TEST_F(Batch, ResumeKeepsEditedResults) {
   EXPECT_NE(messages["a"].find("was changed after the batch wrote it"), std::string::npos) << messages["a"];
   EXPECT_EQ(folder_bytes(options.out / "a"), edited);
   options.resume = false;
+  EXPECT_EQ(run()["a"], Status::failed) << "also without resume";
+  fs::remove_all(options.out / "a");
   EXPECT_EQ(run()["a"], Status::done);
-  EXPECT_NE(folder_bytes(options.out / "a"), edited);
+}
+
+TEST_F(Batch, OutputsOfAFailedFirstRunAreKnown) {
+  const std::string line = R"({"op": "export", "out": ")" + options.out.string() + "/{name}\"}\n";
+  write_text(options.script, line + "{\"op\": \"typo\"}\n");
+  EXPECT_EQ(run()["a"], Status::failed);
+  ASSERT_TRUE(fs::exists(options.out / "a/mlp.json"));
+  std::ofstream(options.out / "a/mlp.json", std::ios::app) << "\n";
+  const auto edited = folder_bytes(options.out / "a");
+  write_text(options.script, line);
+  for (const bool resume : {true, false}) {
+    options.resume = resume;
+    EXPECT_EQ(run()["a"], Status::failed);
+    EXPECT_EQ(folder_bytes(options.out / "a"), edited);
+  }
+  EXPECT_EQ(run()["b"], Status::done);
 }
 
 TEST_F(Batch, ResumeKeepsResultsThatWereEditedAfterAFailedRun) {
@@ -242,7 +259,7 @@ TEST_F(Batch, ResumeChecksInputsAndOutputs) {
   EXPECT_EQ(run(),
             (std::map<std::string, Status>{{"a", Status::failed}, {"b", Status::skipped}, {"c", Status::skipped}}))
       << "a result that is not as it was written is reported";
-  options.resume = false;
+  fs::remove_all(options.out / "a");
   EXPECT_EQ(run()["a"], Status::done);
 }
 
@@ -255,11 +272,9 @@ TEST_F(Batch, ShardsDetectACommonOutputFolder) {
     for (const auto& [name, status] : run()) ++(status == Status::done ? done : failed);
   EXPECT_EQ(done, 1U);
   EXPECT_EQ(failed, 2U);
-  // Again with a single shard: the folder still belongs to one scene.
+  // Again with a single shard: the folder is no longer as its owner wrote it, and belongs to no other scene.
   options.shards = options.shard = 1;
-  std::size_t still = 0;
-  for (const auto& [name, status] : run()) still += status == Status::done ? 1 : 0;
-  EXPECT_EQ(still, 1U);
+  for (const auto& [name, status] : run()) EXPECT_EQ(status, Status::failed) << name;
 }
 
 // A script that exports onto another input scene would replace it before it is processed.
@@ -309,12 +324,11 @@ TEST_F(Batch, ResumeNoticesAddedMasks) {
   fs::create_directories(folder_.path() / "shoot/masks");
   const std::string pose = "[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]";
   write_text(folder_.path() / "shoot/transforms.json",
-             R"({"camera_angle_x": 0.7, "w": 2, "h": 2, "frames": [{"file_path": "p0.png", "transform_matrix": )" + pose +
-                 R"(}, {"file_path": "p1.png", "transform_matrix": )" + pose + "}]}");
+             R"({"camera_angle_x": 0.7, "w": 2, "h": 2, "frames": [{"file_path": "p0.png", "transform_matrix": )" +
+                 pose + R"(}, {"file_path": "p1.png", "transform_matrix": )" + pose + "}]}");
   const std::string mask = encode_png(2, 2, 3, std::vector<std::uint8_t>(12, 255), 1);
   write_text(folder_.path() / "shoot/masks/p0.png", mask);
-  write_text(options.script,
-             R"({"op": "select_masks", "path": ")" + (folder_.path() / "shoot").string() + R"("})");
+  write_text(options.script, R"({"op": "select_masks", "path": ")" + (folder_.path() / "shoot").string() + R"("})");
   options.resume = true;
   EXPECT_EQ(run()["a"], Status::done) << messages["a"];
   EXPECT_EQ(run()["a"], Status::skipped);

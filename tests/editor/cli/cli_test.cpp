@@ -154,6 +154,36 @@ TEST_F(Cli, StudiesReplaceOnlyTheirOwnFiles) {
   for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(study).code, 0);
 }
 
+TEST_F(Cli, OutputsDoNotReplaceFilesOfOtherScenesAndCaptures) {
+  export_scene(scene_of(made_object({.seed = 5})), folder_.path() / "other", {});
+  const auto before = folder_bytes(in("other"));
+  const Outcome texture = rebake_run("render " + in("ball") + " --size 8x8 -o " + in("other/shape0.pngfeat0.png"));
+  EXPECT_EQ(texture.code, 1);
+  EXPECT_NE(texture.text.find("is a file of the scene"), std::string::npos) << texture.text;
+  EXPECT_EQ(folder_bytes(in("other")), before);
+  std::filesystem::create_directories(in("shoot"));
+  write_text(in("shoot/transforms.json"),
+             R"({"camera_angle_x": 0.7, "frames": [{"file_path": "0001.png", "transform_matrix":
+                [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
+  write_text(in("shoot/0001.png"), "a photograph");
+  write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + R"("}
+{"op": "view", "name": "front", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0]}}
+{"op": "{what}", "out": "{out}"})");
+  const auto capture = folder_bytes(in("shoot"));
+  for (const auto& [what, out] :
+       {std::pair("render", "shoot/0001.png"), std::pair("export_views", "shoot/transforms.json")}) {
+    const Outcome refused = rebake_run("run " + in("s.jsonl") + " --var what=" + what + " out=" + in(out));
+    EXPECT_EQ(refused.code, 1) << what << refused.text;
+    EXPECT_EQ(folder_bytes(in("shoot")), capture) << what;
+  }
+  write_text(in("notes.txt"), "precious");
+  EXPECT_EQ(rebake_run("light train " + in("ball") +
+                       R"( --edit '{"op": "bend", "degrees": 30}' --poses 8 --rays 16 -o )" + in("notes.txt"))
+                .code,
+            1);
+  EXPECT_EQ(read_file(in("notes.txt")), "precious");
+}
+
 TEST_F(Cli, BatchesDoNotShareAReport) {
   write_text(in("s.jsonl"), R"({"op": "select", "all": true})");
   const std::string batch = "batch " + in("s.jsonl") + " --scenes " + in("ball") + " -o " + in("out");

@@ -459,5 +459,44 @@ TEST_F(DocumentTest, ImportsKeepNodeNames) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(opened.roots[k]->name, document.scene().roots[k]->name);
 }
 
+TEST_F(DocumentTest, SavingKeepsWhatAnotherProgramSavedMeanwhile) {
+  Document first;
+  import(first);
+  first.save(path("p.rebake"));
+  Document other = Document::open(path("p.rebake")), same = Document::open(path("p.rebake"));
+  act(other, R"({"op": "background", "color": [1, 0, 0]})");
+  other.save(path("p.rebake"));
+  const std::string newest = read_file(path("p.rebake"));
+  act(same, R"({"op": "background", "color": [0, 1, 0]})");
+  for (Document* document : {&first, &same}) {
+    try {
+      document->save(path("p.rebake"));
+      ADD_FAILURE() << "replaced edits of another program";
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("was changed by another program"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(read_file(path("p.rebake")), newest);
+  }
+  other.undo();
+  other.save(path("p.rebake"));
+  same.save(path("p.rebake"), {}, Document::OtherProject::replace);
+  EXPECT_EQ(Document::open(path("p.rebake")).history().undo_count(), 2U);
+}
+
+TEST_F(DocumentTest, OtherProjectsAreReplacedWithAWarningOrNotAtAll) {
+  Document one, other;
+  import(one);
+  act(one, R"({"op": "background", "color": [1, 0, 0]})");
+  one.save(path("p.rebake"));
+  import(other);
+  EXPECT_THROW(other.save(path("p.rebake")), FileError) << "it has more edits";
+  act(other, R"({"op": "background", "color": [0, 0, 1]})");
+  EXPECT_THROW(other.save(path("p.rebake"), {}, Document::OtherProject::keep), FileError);
+  const std::vector<std::string> warnings = other.save(path("p.rebake"));
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0], "it replaced a project with 1 other edits");
+  EXPECT_TRUE(other.save(path("p.rebake")).empty());
+}
+
 }  // namespace
 }  // namespace rebake::test

@@ -137,7 +137,7 @@ TEST_F(Recovery, NamesAndRelinksMovedSources) {
   }
   // Relinks the folder itself, or a folder above it.
   for (const auto& [from, to] : {std::pair("sources/ball", "elsewhere/ball"), std::pair("sources", "elsewhere")}) {
-    const Document::Recovered found = Document::recover(path("journal"), {{path(from), path(to)}});
+    Document::Recovered found = Document::recover(path("journal"), {{path(from), path(to)}});
     EXPECT_EQ(found.edits, 4U) << from;
     EXPECT_TRUE(found.lost.empty());
     found.document.save(path("p.rebake"));

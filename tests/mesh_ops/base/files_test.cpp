@@ -465,5 +465,32 @@ TEST(Files, RejectsPipeWithoutReader) {
   EXPECT_THROW(write_file_atomically(pipe, "bytes", {}), FileError);
 }
 
+// Another program may write into the target while the new contents are written.
+TEST(AtomicFolder, KeepsFilesThatAppearInTheTargetMeanwhile) {
+  TemporaryFolder folder;
+  const fs::path target = folder.path() / "scene";
+  const auto refuse_notes = [](const fs::path& replaced) {
+    if (fs::exists(replaced / "notes.txt")) throw FileError(replaced, "contains notes");
+  };
+  for (int round = 0; round < 2; ++round) {
+    AtomicFolder out(target, {}, refuse_notes);
+    out.write("mlp.json", std::to_string(round));
+    if (round == 0) {
+      out.commit();
+      continue;
+    }
+    write_text(target / "notes.txt", "mine");
+    try {
+      out.commit();
+      ADD_FAILURE() << "replaced the notes";
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("received other files"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(read_file(target / "notes.txt"), "mine");
+  EXPECT_EQ(read_file(target / "mlp.json"), "0");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+}
+
 }  // namespace
 }  // namespace rebake::test
