@@ -5,7 +5,14 @@
 uniform usampler2D features;
 #if WRITES_FRAME
 uniform usampler2D frames;
-uniform samplerBuffer frame_table;  // 4 texels per frame: columns of camera_to_fed; decoder, alpha factor, alpha offset
+// 4 entries per frame: columns of camera_to_fed; decoder, alpha factor, alpha offset
+#if FRAME_UNIFORMS
+uniform vec4 frame_table[4 * FRAME_UNIFORMS];
+vec4 frame_entry(int k) { return frame_table[k]; }
+#else
+uniform samplerBuffer frame_table;
+vec4 frame_entry(int k) { return texelFetch(frame_table, k); }
+#endif
 uniform float decoder_count;
 #else
 uniform mat3 camera_to_fed;
@@ -139,14 +146,13 @@ void main() {
         uvec2 texel = texelFetch(features, at, 0).rg;
         if (texel.r == 0u) continue;
         int frame = int(texelFetch(frames, at, 0).r) * 4;
-        vec4 info = texelFetch(frame_table, frame + 3);
+        vec4 info = frame_entry(frame + 3);
         if (int(info.x) != k) continue;
         if (info.y == 2.0) add(halved, texel); else add(plain, texel);
 #if WRITES_LIGHT
         add_light(light, at);
 #endif
-        ray += fed_ray(at, mat3(texelFetch(frame_table, frame).xyz, texelFetch(frame_table, frame + 1).xyz,
-                                texelFetch(frame_table, frame + 2).xyz));
+        ray += fed_ray(at, mat3(frame_entry(frame).xyz, frame_entry(frame + 1).xyz, frame_entry(frame + 2).xyz));
       }
     }
     uint count = halved.count + plain.count;

@@ -9,6 +9,7 @@ void describe_info(SubcommandDescription& command);
 void describe_render(SubcommandDescription& command);
 void describe_run(SubcommandDescription& command);
 void describe_export(SubcommandDescription& command);
+void describe_publish(SubcommandDescription& command);
 void describe_repair(SubcommandDescription& command);
 void describe_batch(SubcommandDescription& command);
 void describe_recover(SubcommandDescription& command);
@@ -24,6 +25,7 @@ inline constexpr Subcommand subcommand_table[] = {
     {"render", "renders folders or scenes to a picture file", describe_render},
     {"run", "runs a script of edits and actions (one JSON object per line)", describe_run},
     {"export", "exports a folder or scene in the MobileNeRF format", describe_export},
+    {"publish", "publishes a scene as a web page", describe_publish},
     {"repair", "writes a folder that other tools have changed as other programs expect it", describe_repair},
     {"batch", "runs one script on many scenes; each is imported as the node \"scene\" and exported at the end",
      describe_batch},

@@ -1,0 +1,108 @@
+#include "editor/actions/publish_action.h"
+
+#include "editor/actions/describe_action.h"
+#include "editor/actions/lit.h"
+#include "editor/actions/views.h"
+#include "editor/document/replaced_work.h"
+#include "editor/edits/stored_view.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "mesh_ops/base/files.h"
+#include "render/web_page/web_page.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* page_mark = "<meta name=\"generator\" content=\"Rebake\">";
+
+bool is_page(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error) && read_file(file).find(page_mark) != std::string::npos;
+}
+
+// Only an earlier page, or an empty folder, is replaced.
+void refuse_other_folder(const fs::path& folder) {
+  if (fs::is_empty(folder)) return;
+  if (!is_page(folder / "index.html"))
+    throw FileError(folder, "exists and is not a published page; choose a new or empty folder");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name != "index.html" && name != "scene.json" && name != "data" && name != "viewer")
+      throw FileError(
+          folder, fmt::format("contains \"{}\", which is not part of its page; choose a new or empty folder", name));
+  }
+}
+
+void refuse_other_file(const fs::path& file) {
+  refuse_replacing_work(file);
+  std::error_code error;
+  if (fs::exists(file, error) && fs::file_size(file, error) > 0 && !is_page(file))
+    throw FileError(file, "exists and is not a published page, so it is not replaced; choose another name");
+}
+
+WebPageOptions options_of(const Scene& scene, const PublishAction& action) {
+  WebPageOptions options;
+  options.title = !action.title.empty() ? action.title : fs::path(absolute_path(action.out)).stem().string();
+  options.single_file = action.single_file;
+  options.home = resolve_view(scene, std::nullopt, action.view, 800, 800, 4).camera;
+  for (const std::string& name : action.views.empty() ? view_names(scene) : action.views)
+    options.views[name] = fitted(scene, stored_view(scene, name, "views"), 1);
+  return options;
+}
+
+std::uint64_t bytes_of(const WebPage& page) {
+  std::uint64_t bytes = 0;
+  for (const auto& [name, content] : page.files) bytes += content.size();
+  return bytes;
+}
+
+}  // namespace
+
+void run(Session& session, const PublishAction& action) {
+  if (action.out.empty()) throw FieldError("out", "is empty");
+  const SourceGuard sources = session.document.sources();
+  if (action.single_file) {
+    if (fs::path(action.out).extension() != ".html") throw FieldError("out", "must end in .html for a single file");
+    sources.check_file(action.out);
+    refuse_other_file(action.out);
+  }
+  const Scene& scene = session.scene();
+  const auto write = [&](const auto& commit) {
+    const Lighting lighting = lit(scene, session.progress);
+    const WebPage page = web_page(scene, lighting, options_of(scene, action), session.progress);
+    commit(page);
+    session.outputs.push_back(action.out);
+    session.say(fmt::format("published {}: {} triangles, {:.2f} MB", action.out, page.triangles,
+                            static_cast<double>(bytes_of(page)) / 1e6));
+    for (const std::string& decision : page.decisions) session.say(decision);
+  };
+  if (action.single_file) {
+    write([&](const WebPage& page) { write_file_atomically(action.out, page.files.at("index.html"), sources); });
+    return;
+  }
+  AtomicFolder out(action.out, sources, refuse_other_folder);
+  write([&](const WebPage& page) {
+    for (const auto& [name, bytes] : page.files) out.write(name, bytes);
+    out.commit();
+  });
+}
+
+REBAKE_DESCRIBE_ACTION(
+    PublishAction, "Publishes the scene as a web page that shows it in browsers with WebGL 2.",
+    (auto& action, auto& visit) {
+      visit("out", action.out, Need::required, "folder to write, or the file NAME.html with single_file");
+      visit("title", action.title, Need::optional, "title of the page; default: the name of the output");
+      visit("view", action.view, Need::optional,
+            "name of the stored view at the start; default: one that frames the scene");
+      visit("views", action.views, Need::optional, "names of stored views that the page offers; default: all");
+      visit("single_file", action.single_file, Need::optional,
+            "one file that works without a server and makes no request");
+    })
+
+}  // namespace rebake

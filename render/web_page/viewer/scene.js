@@ -1,0 +1,136 @@
+// @ts-check
+// Loads the scene: scene.json and the files that it names, from a server or from elements of the page itself.
+
+/**
+ * @typedef {{name: string, bytes: number}} FileEntry
+ * @typedef {{mesh: FileEntry, texels: {width: number, height: number, images: [FileEntry, FileEntry]}, vertices: number,
+ *   triangles: number, step: number, texelSteps: number, origin: number[], streams: {name: string, count: number}[]}} SetEntry
+ * @typedef {{width: number, height: number, gain: FileEntry, offset?: FileEntry}} LightEntry
+ * @typedef {{set: number, frame: number, kind: string, toWorld: number[], objectToFed: number[], light?: LightEntry}} DrawEntry
+ * @typedef {{decoder: number, worldToDecoder: number[], alpha: [number, number]}} FrameEntry
+ * @typedef {{draws: DrawEntry[], sets: SetEntry[], frames: FrameEntry[], home: import('./linear.js').Camera,
+ *   background: [number, number, number], box: [number[], number[]], targets: {frames: boolean, rays: boolean, light: number},
+ *   programs: Object<string, {vertex: string, fragment: string}>, decisions: string[], triangles: number,
+ *   views: {name: string, camera: import('./linear.js').Camera}[]}} Manifest
+ * @typedef {{first: number, count: number, low: number[], high: number[]}} Cluster
+ * @typedef {{corners: Uint32Array, positions: Float32Array, texels: Float32Array, rectangles: Uint16Array,
+ *   turns?: Float32Array, lightPlaces?: Float32Array, clusters: Cluster[]}} Mesh
+ */
+
+const clusterTriangles = 256;
+
+/** The bytes of a file of the page. @param {string} name @returns {Promise<Uint8Array>} */
+async function fileBytes(name) {
+  const element = document.getElementById(name);
+  if (element) {
+    const text = atob(element.textContent ?? '');
+    return Uint8Array.from(text, (c) => c.charCodeAt(0));
+  }
+  const answer = await fetch(name);
+  if (!answer.ok) throw Error(`${name} cannot be loaded (${answer.status})`);
+  return new Uint8Array(await answer.arrayBuffer());
+}
+
+/** @returns {Promise<Manifest>} */
+export async function loadManifest() {
+  const element = document.getElementById('scene.json');
+  if (element) return JSON.parse(element.textContent ?? '');
+  return JSON.parse(new TextDecoder().decode(await fileBytes('scene.json')));
+}
+
+/** @param {Uint8Array} bytes @returns {Promise<Uint8Array>} */
+async function unpacked(bytes) {
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** A feature image with its bytes as in the file. @param {FileEntry} entry */
+export async function loadImage(entry) {
+  const blob = new Blob([await fileBytes(entry.name)], {type: entry.name.endsWith('.webp') ? 'image/webp' : 'image/png'});
+  return createImageBitmap(blob, {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+}
+
+/** Half floats of a light map. @param {FileEntry} entry */
+export async function loadLight(entry) {
+  return new Uint16Array((await unpacked(await fileBytes(entry.name))).buffer);
+}
+
+/**
+ * Streams of integers: successive differences, zigzag coded, in four planes of bytes.
+ * @param {Uint8Array} bytes @param {SetEntry} set @returns {Object<string, Int32Array>}
+ */
+function streamsOf(bytes, set) {
+  /** @type {Object<string, Int32Array>} */
+  const streams = {};
+  let at = 0;
+  for (const {name, count} of set.streams) {
+    const values = new Int32Array(count);
+    let value = 0;
+    for (let k = 0; k < count; ++k) {
+      const code = bytes[at + k] | bytes[at + count + k] << 8 | bytes[at + 2 * count + k] << 16 | bytes[at + 3 * count + k] << 24;
+      value = value + ((code >>> 1) ^ -(code & 1)) | 0;
+      values[k] = value;
+    }
+    streams[name] = values;
+    at += 4 * count;
+  }
+  return streams;
+}
+
+/** Rotation matrices, column-major, of quaternions. @param {Object<string, Int32Array>} s @param {number} count */
+function turnsOf(s, count) {
+  const turns = new Float32Array(9 * count);
+  for (let k = 0; k < count; ++k) {
+    const size = Math.hypot(s.qx[k], s.qy[k], s.qz[k], s.qw[k]), sign = s.mirrored[k] ? -1 : 1;
+    const x = s.qx[k] / size, y = s.qy[k] / size, z = s.qz[k] / size, w = s.qw[k] / size;
+    turns.set([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),
+      2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
+      2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)].map((m) => sign * m), 9 * k);
+  }
+  return turns;
+}
+
+/** @param {Uint32Array} corners @param {Float32Array} positions @returns {Cluster[]} */
+function clustersOf(corners, positions) {
+  const clusters = [];
+  for (let first = 0; first < corners.length; first += 3 * clusterTriangles) {
+    const count = Math.min(3 * clusterTriangles, corners.length - first);
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (let k = first; k < first + count; ++k)
+      for (let axis = 0; axis < 3; ++axis) {
+        const value = positions[3 * corners[k] + axis];
+        if (value < low[axis]) low[axis] = value;
+        if (value > high[axis]) high[axis] = value;
+      }
+    clusters.push({first, count, low, high});
+  }
+  return clusters;
+}
+
+/** @param {SetEntry} set @returns {Promise<Mesh>} */
+export async function loadMesh(set) {
+  const s = streamsOf(await unpacked(await fileBytes(set.mesh.name)), set), n = set.vertices;
+  const positions = new Float32Array(3 * n), texels = new Float32Array(2 * n), rectangles = new Uint16Array(4 * n);
+  for (let k = 0; k < n; ++k) {
+    positions.set([s.x[k] * set.step, s.y[k] * set.step, s.z[k] * set.step], 3 * k);
+    texels.set([s.left[k] + s.u[k] / set.texelSteps, s.top[k] + s.v[k] / set.texelSteps], 2 * k);
+    rectangles.set([s.left[k], s.top[k], s.left[k] + s.width[k], s.top[k] + s.height[k]], 4 * k);
+  }
+  const corners = new Uint32Array(s.corners);
+  /** @type {Mesh} */
+  const mesh = {corners, positions, texels, rectangles, clusters: clustersOf(corners, positions)};
+  if (s.qx) mesh.turns = turnsOf(s, n);
+  if (s.light_x) {
+    mesh.lightPlaces = new Float32Array(2 * n);
+    for (let k = 0; k < n; ++k) mesh.lightPlaces.set([s.light_x[k] / 256, s.light_y[k] / 256], 2 * k);
+  }
+  return mesh;
+}
+
+/** All files of the scene. @param {Manifest} scene */
+export function totalBytes(scene) {
+  let bytes = 0;
+  for (const set of scene.sets) bytes += set.mesh.bytes + set.texels.images[0].bytes + set.texels.images[1].bytes;
+  for (const {light} of scene.draws) if (light) bytes += light.gain.bytes + (light.offset ? light.offset.bytes : 0);
+  return bytes;
+}

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "mesh_ops/light/relight/relighting.h"
+#include "render/gpu_scene/surface.h"
+#include "render/web_page/web_image.h"
+
+namespace rebake {
+
+/// Number of triangles that the page draws or leaves out together.
+inline constexpr std::size_t web_cluster_triangles = 256;
+
+/// Steps per texel of texture coordinates.
+inline constexpr double web_texel_steps = 1024;
+
+/// A texture set's triangles in the binary layout of the web page (README.md).
+struct WebMesh {
+  std::string bytes;  ///< all streams, one after the other, compressed (gzip)
+  std::string kind;   ///< defines of its shaders: TURNED_MESH, LIT_MESH, GLOSSY_MESH
+  std::size_t triangles = 0, vertices = 0;
+  double position_error = 0;  ///< largest error of a position along an axis, in object units
+};
+
+/// Encodes the triangles of a surface that may show opaque texels. `step`: spacing of the grid of positions, in object
+/// units. `light`: its light map, or null. Adds "vertices", "triangles", "streams", "step", "origin" to `manifest`.
+WebMesh web_mesh(const PreparedSurface& surface, double step, const LightMap* light, nlohmann::json& manifest);
+
+/// The texels of a surface as two images, packed as on the GPU. All bytes of transparent texels are 0.
+struct WebTexels {
+  WebImage image0, image1;
+  int width = 0, height = 0;
+};
+WebTexels web_texels(const PreparedSurface& surface);
+
+/// Compresses bytes in the format gzip (RFC 1952), which browsers unpack by DecompressionStream.
+std::string gzipped(std::string_view bytes);
+
+/// Gains or offsets of a light map, 4 half floats per node, compressed.
+std::string web_light_texels(const LightChart& chart, const std::vector<Eigen::Vector3f>& values);
+
+}  // namespace rebake

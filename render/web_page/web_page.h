@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/light/lighting.h"
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+/// Choices of a web page.
+struct WebPageOptions {
+  std::string title;
+  Camera home;                          ///< camera at the start
+  std::map<std::string, Camera> views;  ///< named views, with all planes set
+  /// Positions lie on a grid with at least this many steps per pixel of a picture of `home_height` pixels by the home
+  /// camera, at the point nearest to it.
+  double steps_per_pixel = 256;
+  int home_height = 800;
+  bool single_file = false;  ///< everything in index.html, which then works without a server
+};
+
+/// A page as files, and what was decided for it.
+struct WebPage {
+  std::map<std::string, std::string> files;  ///< relative path → bytes
+  std::size_t triangles = 0;
+  std::vector<std::string> decisions;  ///< what the page carries and what not, each with its reason
+};
+
+/// Makes a page that shows the visible nodes of a scene by Rebake's rule, in the colours of `lighting`. It carries only
+/// the shaders and data that the scene calls for. Throws EditError if nothing is visible, DeviceError and FileError if
+/// the files of the page are missing.
+WebPage web_page(const Scene& scene, const Lighting& lighting, const WebPageOptions& options,
+                 const Progress& progress = {});
+
+}  // namespace rebake
