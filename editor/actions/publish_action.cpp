@@ -50,7 +50,7 @@ WebPageOptions options_of(const Scene& scene, const PublishAction& action) {
   WebPageOptions options;
   options.title = !action.title.empty() ? action.title : fs::path(absolute_path(action.out)).stem().string();
   options.single_file = action.single_file;
-  options.home = resolve_view(scene, std::nullopt, action.view, 800, 800, 4).camera;
+  options.home = resolve_view(scene, action.camera, action.view, 800, 800, 4).camera;
   for (const std::string& name : action.views.empty() ? view_names(scene) : action.views)
     options.views[name] = fitted(scene, stored_view(scene, name, "views"), 1);
   return options;
@@ -80,7 +80,7 @@ void run(Session& session, const PublishAction& action) {
     session.outputs.push_back(action.out);
     session.say(fmt::format("published {}: {} triangles, {:.2f} MB", action.out, page.triangles,
                             static_cast<double>(bytes_of(page)) / 1e6));
-    for (const std::string& decision : page.decisions) session.say(decision);
+    for (const std::string& decision : page.decisions) session.report(decision);
   };
   if (action.single_file) {
     write([&](const WebPage& page) { write_file_atomically(action.out, page.files.at("index.html"), sources); });
@@ -100,6 +100,7 @@ REBAKE_DESCRIBE_ACTION(
       visit("title", action.title, Need::optional, "title of the page; default: the name of the output");
       visit("view", action.view, Need::optional,
             "name of the stored view at the start; default: one that frames the scene");
+      visit("camera", action.camera, Need::optional, "the camera at the start");
       visit("views", action.views, Need::optional, "names of stored views that the page offers; default: all");
       visit("single_file", action.single_file, Need::optional,
             "one file that works without a server and makes no request");

@@ -10,7 +10,8 @@ struct PublishAction {
   static constexpr const char* op = "publish";
   std::string out;                 ///< folder; a file if `single_file`
   std::string title;               ///< empty: the name of the output
-  std::string view;                ///< stored view at the start; empty: one that frames the scene
+  std::string view;                ///< stored view at the start; empty: `camera`
+  std::optional<Camera> camera;    ///< at the start; nothing: one that frames the scene
   std::vector<std::string> views;  ///< stored views to offer; empty: all
   bool single_file = false;
 };

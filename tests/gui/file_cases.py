@@ -1,5 +1,6 @@
 """Files: opening, saving, exporting, recovering, and file dialogs."""
 
+import os
 import shutil
 import subprocess
 import time
@@ -65,6 +66,23 @@ class FileTest(WindowCase):
         editor.click("dialog/path")
         editor.answer(str(project))
         until(project.is_file, "the project", 20)
+
+    def test_a_web_page_is_published_and_opened(self):
+        # Stands for the desktop's way to open files.
+        opener, opened = self.folder / "bin/xdg-open", self.folder / "opened"
+        opener.parent.mkdir()
+        opener.write_text(f"#!/bin/sh\necho \"$1\" >{opened}\n")
+        opener.chmod(0o755)
+        self.screen.environment["PATH"] = f"{opener.parent}:{os.environ['PATH']}"
+        editor = self.open(FICUS)
+        editor.until_ops("import")
+        editor.command("publish")
+        editor.click("dialog/path")
+        page = self.folder / "page.html"
+        editor.answer(str(page))
+        until(opened.is_file, "the browser", 30)
+        self.assertIn("<title>page</title>", page.read_text())
+        until(lambda: opened.read_text().strip() == str(page), "its file", 5)
 
     def test_what_was_opened_before_has_a_picture(self):
         self.open_ficus()

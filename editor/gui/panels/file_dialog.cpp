@@ -128,6 +128,9 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
     case FileDialogPurpose::export_folder:
       editor.project.export_scene(export_.action(editor.scene(), wanted_nodes(editor), path));
       break;
+    case FileDialogPurpose::web_page:
+      editor.project.publish(path, editor.view.camera);
+      break;
     case FileDialogPurpose::screenshot:
       editor.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
       break;

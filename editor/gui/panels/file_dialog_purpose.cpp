@@ -18,6 +18,8 @@ constexpr FileDialogText questions[] = {
     {FileDialogPurpose::save_scene, "Save Rebake scene", "A folder with all nodes, without the history.", "Save", ""},
     {FileDialogPurpose::export_folder, "Export", "A MobileNeRF folder, or a Rebake scene if one folder cannot hold it.",
      "Export", ""},
+    {FileDialogPurpose::web_page, "Publish web page", "One file that shows the scene in any browser, without a server.",
+     "Publish", ".html"},
     {FileDialogPurpose::screenshot, "Screenshot", "A picture of the scene, without grid and handles.", "Write", ".png",
      ".png .jpg .jpeg .webp .exr"},
     {FileDialogPurpose::turntable, "Turntable", "A folder for pictures of a full orbit: 000.png, 001.png, …", "Write",

@@ -11,6 +11,7 @@ enum class FileDialogPurpose {
   save_project,
   save_scene,
   export_folder,
+  web_page,
   screenshot,
   turntable,
   camera_path,

@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "editor/actions/publish_action.h"
 #include "editor/actions/save.h"
 #include "editor/document/journal.h"
 #include "editor/document/project.h"
+#include "editor/gui/platform/default_program.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
 
@@ -187,6 +189,19 @@ void Project::export_scene(const ExportAction& action) {
     run(session, action);
     session.drop_renderer();  // frees the copy of the scene on the GPU that measured the loss
   });
+}
+
+void Project::publish(const fs::path& file, const Camera& camera) {
+  worker_.start(
+      "publishing",
+      [file, camera](Session& session) {
+        PublishAction action;
+        action.out = file.string();
+        action.single_file = true;
+        action.camera = camera;
+        run(session, action);
+      },
+      [file] { open_in_default_program(file); });
 }
 
 void Project::save_script(const fs::path& file) {

@@ -60,6 +60,8 @@ class Project {
   void save(const std::filesystem::path& file, Document::OtherProject other = Document::OtherProject::keep_more);
   void save_scene(const std::filesystem::path& folder);
   void export_scene(const ExportAction& action);
+  /// Publishes a single-file web page that starts with `camera`, and opens it in the browser.
+  void publish(const std::filesystem::path& file, const Camera& camera);
   void save_script(const std::filesystem::path& file);
   void run_script(const std::filesystem::path& file);
   /// Whether the scene differs from the saved project, or from the imports if there is none.

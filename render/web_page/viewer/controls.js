@@ -69,7 +69,10 @@ export class Controls {
     keys[e.key]();
   }
 
-  /** Turns about the pivot. @param {number} dx pixels @param {number} dy pixels */
+  /**
+   * Turns about the pivot.
+   * @param {number} dx pixels @param {number} dy pixels
+   */
   orbit(dx, dy) {
     const camera = this.camera, up = unit(camera.up), perPixel = Math.PI / this.element.clientHeight;
     let away = rotated(sub(camera.eye, camera.target), up, -dx * perPixel);
@@ -79,7 +82,10 @@ export class Controls {
     this.move({...camera, eye: add(camera.target, away)});
   }
 
-  /** Moves eye and pivot with the pointer. @param {number} dx pixels @param {number} dy pixels */
+  /**
+   * Moves eye and pivot with the pointer.
+   * @param {number} dx pixels @param {number} dy pixels
+   */
   pan(dx, dy) {
     const camera = this.camera, [right, up] = cameraAxes(camera);
     const distance = Math.hypot(...sub(camera.eye, camera.target)), pixel = 2 * halfHeight(camera, distance) / this.element.clientHeight;
@@ -87,7 +93,10 @@ export class Controls {
     this.move({...camera, eye: add(camera.eye, motion), target: add(camera.target, motion)});
   }
 
-  /** Zooms to a point of the page. @param {number} factor of the distance @param {number} x @param {number} y */
+  /**
+   * Zooms to a point of the page.
+   * @param {number} factor of the distance @param {number} x @param {number} y
+   */
   zoom(factor, x, y) {
     const camera = this.camera, away = sub(camera.eye, camera.target), distance = Math.hypot(...away);
     const at = this.pointAt(x, y, distance), shift = scale(sub(at, camera.target), 1 - factor);
@@ -102,7 +111,10 @@ export class Controls {
     this.move(next);
   }
 
-  /** The point at a depth under a point of the page. @param {number} x @param {number} y @param {number} depth */
+  /**
+   * The point at a depth under a point of the page.
+   * @param {number} x @param {number} y @param {number} depth
+   */
   pointAt(x, y, depth) {
     const {left, top, width, height} = this.element.getBoundingClientRect(), camera = this.camera;
     const [right, up, back] = cameraAxes(camera), half = halfHeight(camera, depth);
@@ -110,7 +122,10 @@ export class Controls {
     return add(add(camera.eye, scale(back, -depth)), add(scale(right, across), scale(up, above)));
   }
 
-  /** Makes the surface under a point of the page the pivot. @param {number} x @param {number} y */
+  /**
+   * Makes the surface under a point of the page the pivot.
+   * @param {number} x @param {number} y
+   */
   setPivot(x, y) {
     const {left, top, width, height} = this.element.getBoundingClientRect();
     const depth = this.page.depthAt((x - left) / width, (y - top) / height);

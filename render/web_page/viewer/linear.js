@@ -30,7 +30,10 @@ export function cameraAxes(camera) {
   return [right, cross(back, right), back];
 }
 
-/** Product of two 3×3 matrices. @param {number[]} a @param {number[]} b */
+/**
+ * Product of two 3×3 matrices.
+ * @param {number[]} a @param {number[]} b
+ */
 export function multiply3(a, b) {
   const m = new Array(9).fill(0);
   for (let i = 0; i < 3; ++i)
@@ -56,7 +59,10 @@ export function objectToCamera(camera, toWorld, origin) {
   return m;
 }
 
-/** Half of the visible height at a depth. @param {Camera} camera @param {number} depth */
+/**
+ * Half of the visible height at a depth.
+ * @param {Camera} camera @param {number} depth
+ */
 export const halfHeight = (camera, depth) =>
   camera.orthoHeight ? camera.orthoHeight / 2 : depth * Math.tan(camera.fov * Math.PI / 360);
 
@@ -80,7 +86,10 @@ export function projection(camera, aspect, reversed) {
   return p;
 }
 
-/** Product of a 4×4 and a 3×4 matrix, as 4×4. @param {number[]} p @param {number[]} m */
+/**
+ * Product of a 4×4 and a 3×4 matrix, as 4×4.
+ * @param {number[]} p @param {number[]} m
+ */
 export function multiply4(p, m) {
   const out = new Array(16).fill(0);
   for (let i = 0; i < 4; ++i)
@@ -91,14 +100,20 @@ export function multiply4(p, m) {
   return out;
 }
 
-/** Column-major floats of a row-major matrix, for uniforms. @param {number[]} m @param {number} size */
+/**
+ * Column-major floats of a row-major matrix, for uniforms.
+ * @param {number[]} m @param {number} size
+ */
 export function columns(m, size) {
   const out = new Float32Array(size * size);
   for (let i = 0; i < size; ++i) for (let j = 0; j < size; ++j) out[size * j + i] = m[size * i + j];
   return out;
 }
 
-/** Rotation of a vector about a unit axis. @param {number[]} v @param {Vec3} axis @param {number} angle @returns {Vec3} */
+/**
+ * Rotation of a vector about a unit axis.
+ * @param {number[]} v @param {Vec3} axis @param {number} angle @returns {Vec3}
+ */
 export function rotated(v, axis, angle) {
   const c = Math.cos(angle), s = Math.sin(angle);
   return add(add(scale(v, c), scale(cross(axis, v), s)), scale(axis, dot(axis, v) * (1 - c)));

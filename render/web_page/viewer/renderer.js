@@ -46,9 +46,13 @@ export class Renderer {
     this.targets = new Map();
     this.drawCalls = 0;
     this.trianglesDrawn = 0;
+    this.aspect = 1;
   }
 
-  /** Uploads a texture set. @param {number} number */
+  /**
+   * Uploads a texture set.
+   * @param {number} number
+   */
   async load(number) {
     const entry = this.scene.sets[number];
     const [mesh, image0, image1] = await Promise.all(
@@ -60,7 +64,10 @@ export class Renderer {
     image1.close();
   }
 
-  /** Uploads the light map of a draw. @param {number} number */
+  /**
+   * Uploads the light map of a draw.
+   * @param {number} number
+   */
   async loadLightOf(number) {
     const light = this.scene.draws[number].light;
     if (!light) return;
@@ -86,7 +93,10 @@ export class Renderer {
     return texture;
   }
 
-  /** The integer texture of two feature images, byte for byte. @param {ImageBitmap} image0 @param {ImageBitmap} image1 */
+  /**
+   * The integer texture of two feature images, byte for byte.
+   * @param {ImageBitmap} image0 @param {ImageBitmap} image1
+   */
   joined(image0, image1) {
     const gl = this.gl, {width, height} = image0;
     gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
@@ -216,7 +226,10 @@ export class Renderer {
     this.gl.uniform2f(program.at('ray_offset'), -right, -top);
   }
 
-  /** Rotation from camera space to the directions that a frame's decoder takes. @param {Camera} camera @param {number} frame */
+  /**
+   * Rotation from camera space to the directions that a frame's decoder takes.
+   * @param {Camera} camera @param {number} frame
+   */
   cameraToFed(camera, frame) {
     return multiply3(this.scene.frames[frame].worldToDecoder, transposed3(cameraAxes(camera).flat()));
   }
@@ -265,7 +278,10 @@ export class Renderer {
     gl.uniformMatrix3fv(program.at('object_to_fed'), false, columns(draw.objectToFed, 3));
   }
 
-  /** Draws the clusters in view. @param {Mesh} mesh @param {number[]} matrix object to clip space */
+  /**
+   * Draws the clusters in view.
+   * @param {Mesh} mesh @param {number[]} matrix object to clip space
+   */
   drawClusters(mesh, matrix) {
     const gl = this.gl;
     /** @type {{cluster: import('./scene.js').Cluster, depth: number}[]} */
@@ -384,7 +400,10 @@ export class Renderer {
     gl.uniform2fv(program.at('alpha_code'), alpha);
   }
 
-  /** RGBA bytes of a picture with 4 samples per pixel, top row first. @param {Camera} camera @param {number} width @param {number} height */
+  /**
+   * RGBA bytes of a picture with 4 samples per pixel, top row first.
+   * @param {Camera} camera @param {number} width @param {number} height
+   */
   pixels(camera, width, height) {
     const gl = this.gl, target = this.target('capture', width, height, [['picture', gl.RGBA8]], false);
     this.drawAtRest(camera, width, height, target.framebuffer);
@@ -395,21 +414,11 @@ export class Renderer {
     return flipped;
   }
 
-  /** Depth of the surface at a point of the canvas, 0 … 1 from the top left; null where there is none. */
-  /** @param {Camera} camera @param {number} x @param {number} y @param {number} aspect @returns {number | null} */
-  depthAt(camera, x, y, aspect) {
-    const samples = this.targets.get('samples'), gl = this.gl;
-    if (!samples) return null;
-    // Depth cannot be read: the triangles' bounds decide, nearest first along the ray.
-    const covered = new Uint32Array(4);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, samples.framebuffer);
-    gl.readBuffer(gl.COLOR_ATTACHMENT0);
-    gl.readPixels(Math.floor(x * samples.width), Math.floor((1 - y) * samples.height), 1, 1, gl.RGBA_INTEGER, gl.UNSIGNED_INT, covered);
-    return (covered[0] & 255) === 0 ? null : this.rayDepth(camera, x, y, aspect);
-  }
-
-  /** Depth of the nearest triangle along the ray through a point of the canvas. */
-  /** @param {Camera} camera @param {number} x @param {number} y @param {number} aspect @returns {number | null} */
+  /**
+   * Depth of the nearest triangle along the ray through a point of the canvas, 0 … 1 from the top left; holes count as
+   * surface. Null where there is no triangle.
+   * @param {Camera} camera @param {number} x @param {number} y @param {number} aspect @returns {number | null}
+   */
   rayDepth(camera, x, y, aspect) {
     let nearest = Infinity;
     const top = halfHeight(camera, 1), px = (2 * x - 1) * top * aspect, py = (1 - 2 * y) * top;

@@ -19,7 +19,10 @@
 
 const clusterTriangles = 256;
 
-/** The bytes of a file of the page. @param {string} name @returns {Promise<Uint8Array>} */
+/**
+ * The bytes of a file of the page.
+ * @param {string} name @returns {Promise<Uint8Array>}
+ */
 async function fileBytes(name) {
   const element = document.getElementById(name);
   if (element) {
@@ -44,13 +47,19 @@ async function unpacked(bytes) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** A feature image with its bytes as in the file. @param {FileEntry} entry */
+/**
+ * A feature image with its bytes as in the file.
+ * @param {FileEntry} entry
+ */
 export async function loadImage(entry) {
   const blob = new Blob([await fileBytes(entry.name)], {type: entry.name.endsWith('.webp') ? 'image/webp' : 'image/png'});
   return createImageBitmap(blob, {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
 }
 
-/** Half floats of a light map. @param {FileEntry} entry */
+/**
+ * Half floats of a light map.
+ * @param {FileEntry} entry
+ */
 export async function loadLight(entry) {
   return new Uint16Array((await unpacked(await fileBytes(entry.name))).buffer);
 }
@@ -77,7 +86,10 @@ function streamsOf(bytes, set) {
   return streams;
 }
 
-/** Rotation matrices, column-major, of quaternions. @param {Object<string, Int32Array>} s @param {number} count */
+/**
+ * Rotation matrices, column-major, of quaternions.
+ * @param {Object<string, Int32Array>} s @param {number} count
+ */
 function turnsOf(s, count) {
   const turns = new Float32Array(9 * count);
   for (let k = 0; k < count; ++k) {
@@ -127,7 +139,10 @@ export async function loadMesh(set) {
   return mesh;
 }
 
-/** All files of the scene. @param {Manifest} scene */
+/**
+ * All files of the scene.
+ * @param {Manifest} scene
+ */
 export function totalBytes(scene) {
   let bytes = 0;
   for (const set of scene.sets) bytes += set.mesh.bytes + set.texels.images[0].bytes + set.texels.images[1].bytes;

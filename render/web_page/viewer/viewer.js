@@ -37,7 +37,7 @@ class Viewer extends EventTarget {
     this.renderer = new Renderer(canvas, this.scene);
     this.controls = new Controls(canvas, this.scene.home, {
       changed: () => this.changed(),
-      depthAt: (x, y) => this.renderer?.depthAt(this.camera, x, y, canvas.width / canvas.height) ?? null,
+      depthAt: (x, y) => this.renderer?.rayDepth(this.camera, x, y, canvas.width / canvas.height) ?? null,
     });
     this.share = 1;
     this.frames = 0;
@@ -100,10 +100,16 @@ class Viewer extends EventTarget {
   /** @returns {Camera} */
   get camera() { return /** @type {Controls} */ (this.controls).camera; }
 
-  /** Shows a camera: lengths in scene units, fov vertical in degrees. @param {Partial<Camera>} camera */
+  /**
+   * Shows a camera: lengths in scene units, fov vertical in degrees.
+   * @param {Partial<Camera>} camera
+   */
   setView(camera) { this.controls?.move({...this.camera, ...camera}); }
 
-  /** A PNG data URL of the present view at 4 samples per pixel. @param {number} width @param {number} height */
+  /**
+   * A PNG data URL of the present view at 4 samples per pixel.
+   * @param {number} width @param {number} height
+   */
   async captureFrame(width, height) {
     await this.ready;
     const picture = document.createElement('canvas');

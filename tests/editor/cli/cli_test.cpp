@@ -184,6 +184,29 @@ TEST_F(Cli, OutputsDoNotReplaceFilesOfOtherScenesAndCaptures) {
   EXPECT_EQ(read_file(in("notes.txt")), "precious");
 }
 
+TEST_F(Cli, PublishedPagesReplaceOnlyPages) {
+  const std::string publish = "publish " + in("ball") + " -o ";
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(publish + in("page")).code, 0);
+  for (const char* file : {"index.html", "scene.json", "viewer/viewer.js", "data/mesh0.gz"})
+    EXPECT_TRUE(std::filesystem::exists(in("page/" + std::string(file)))) << file;
+  write_text(in("page/notes.txt"), "mine");
+  const auto before = folder_bytes(in("page"));
+  EXPECT_EQ(rebake_run(publish + in("page")).code, 1);
+  EXPECT_EQ(folder_bytes(in("page")), before);
+  const auto scene = folder_bytes(in("ball"));
+  export_scene(scene_of(made_object({.seed = 5})), folder_.path() / "other", {});
+  EXPECT_EQ(rebake_run(publish + in("other")).code, 1) << "another scene";
+  EXPECT_EQ(rebake_run(publish + in("ball")).code, 1) << "its own source";
+  EXPECT_EQ(folder_bytes(in("ball")), scene);
+  const std::string single = publish + in("page.html") + " --single-file";
+  write_text(in("page.html"), "<p>mine</p>");
+  EXPECT_EQ(rebake_run(single).code, 1);
+  EXPECT_EQ(read_file(in("page.html")), "<p>mine</p>");
+  std::filesystem::remove(in("page.html"));
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(single).code, 0);
+  EXPECT_EQ(rebake_run(publish + in("page2") + " --single-file").code, 2) << "must end in .html";
+}
+
 TEST_F(Cli, BatchesDoNotShareAReport) {
   write_text(in("s.jsonl"), R"({"op": "select", "all": true})");
   const std::string batch = "batch " + in("s.jsonl") + " --scenes " + in("ball") + " -o " + in("out");
