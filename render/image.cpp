@@ -1,10 +1,12 @@
 #include "render/image.h"
 
 #include <fmt/format.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <fstream>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -35,12 +37,46 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
+constexpr std::string_view software_text{"Software\0Rebake", 15};
+constexpr std::size_t after_header = 8 + 25;  // the signature and the chunk IHDR
+
+// Adds a text chunk that names the program (PNG, section 11.3.4.3).
+std::string with_software(const std::string& png) {
+  std::string chunk = "tEXt" + std::string(software_text);
+  const uLong sum = crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size()));
+  const auto big_endian = [](std::uint64_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 255U);
+    return bytes;
+  };
+  return png.substr(0, after_header) + big_endian(software_text.size()) + chunk + big_endian(sum) +
+         png.substr(after_header);
+}
+
+// The first bytes of a file; fewer if it is shorter.
+std::string beginning_of(const std::filesystem::path& path) {
+  std::string bytes(64, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+// Whether bytes begin as those of a picture format that readers know.
+bool begins_as_picture(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  constexpr std::array marks{"\x89PNG"sv, "\xff\xd8\xff"sv, "\x76\x2f\x31\x01"sv, "II*\0"sv, "MM\0*"sv, "#?"sv};
+  return std::any_of(marks.begin(), marks.end(), [&](std::string_view mark) { return bytes.starts_with(mark); }) ||
+         (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP"));
+}
+
 // The bytes of a picture file. Throws FileError.
 std::string encoded(const Image& image, const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   const auto format = std::find_if(written_formats.begin(), written_formats.end(),
                                    [&](const WrittenFormat& one) { return one.extension == extension; });
-  if (format == written_formats.end()) return encode_png(image.width, image.height, 3, image.rgb, compression_level);
+  if (format == written_formats.end())
+    return with_software(encode_png(image.width, image.height, 3, image.rgb, compression_level));
   const PictureCodecs& codecs = picture_codecs(path);
   std::string bytes, error;
   bool done = false;
@@ -90,6 +126,14 @@ void check_picture_path(const std::filesystem::path& path, const SourceGuard& gu
   if (std::find(unsupported.begin(), unsupported.end(), extension_of(path)) != unsupported.end())
     throw FileError(path, "pictures are not written in this format; name a file that ends in " + picture_extensions());
   guard.check_file(path);
+  if (std::error_code error; std::filesystem::is_regular_file(path, error) &&
+                             std::filesystem::file_size(path, error) > 0 && !begins_as_picture(beginning_of(path)))
+    throw FileError(path, "exists and is not a picture, so it is not replaced; choose another name");
+}
+
+bool is_rendered_picture(const std::filesystem::path& path) {
+  const std::string bytes = beginning_of(path);
+  return bytes.starts_with("\x89PNG") && bytes.find(software_text) != std::string::npos;
 }
 
 void write_picture(const Image& image, const std::filesystem::path& path, const SourceGuard& guard) {

@@ -25,18 +25,23 @@ bool holds_cameras(const std::filesystem::path& path) {
   return root.is_object() && (root.contains("frames") || root.contains("camera_path"));
 }
 
-// Cameras of photographs that exist can only be replaced by those of the same names: poses cannot be made again.
-void refuse_replacing_cameras(const std::filesystem::path& path, const std::vector<std::string>& names) {
-  const CameraFormat* format = camera_format_at(path);
-  if (format == nullptr) return;
+// Cameras in a file are poses that nobody may be able to make again.
+void refuse_replacing_cameras(const std::filesystem::path& path, const std::vector<std::string>& names,
+                              const CameraFormat& format) {
+  const CameraFormat* there = camera_format_at(path);
+  if (there == nullptr) return;
+  const auto refuse = [&](const std::string& what) {
+    throw FileError(path, what + ", so it is not replaced; choose another name");
+  };
+  if (there->name != std::string_view(format.name)) refuse(fmt::format("has cameras in the format {}", there->name));
   std::vector<std::string> notes;
   const std::vector<PhotoCamera> cameras = read_cameras(path, "", {}, notes);
-  if (capture_files(path, cameras).empty()) return;
+  if (cameras.size() > names.size())
+    refuse(fmt::format("has {} cameras, more than the {} to be written", cameras.size(), names.size()));
   const bool same = std::all_of(cameras.begin(), cameras.end(), [&](const PhotoCamera& camera) {
     return std::find(names.begin(), names.end(), std::filesystem::path(camera.name).stem().string()) != names.end();
   });
-  if (!same)
-    throw FileError(path, "has the cameras of photographs beside it, so it is not replaced; choose another name");
+  if (!same && !capture_files(path, cameras).empty()) refuse("has the cameras of photographs beside it");
 }
 
 }  // namespace
@@ -59,7 +64,7 @@ void run(Session& session, const ExportViewsAction& action) {
   const std::vector<std::string> names = action.views.empty() ? view_names(scene) : action.views;
   if (names.empty()) throw FieldError("views", "is empty, and the scene has no stored views");
   std::vector<PhotoCamera> cameras;
-  refuse_replacing_cameras(action.out, names);
+  refuse_replacing_cameras(action.out, names, format);
   for (const std::string& name : names)
     cameras.push_back(photo_camera(stored_view(scene, name, "views"), name + ".png", action.width, action.height));
   write_file_atomically(action.out, format.write(from_y_up(std::move(cameras), action.world.value_or(format.up))),

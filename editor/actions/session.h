@@ -34,6 +34,7 @@ class Session {
   std::vector<std::string> exports;   ///< folders written by ExportAction
   std::vector<std::string> outputs;   ///< pictures, projects and scene folders written by other actions
   bool below_requested_psnr = false;  ///< an export missed its requested PSNR
+  std::function<void()> after_line;   ///< called after each line of a script, if set
   Progress progress;                  ///< for long operations
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< outputs a message of one line
 

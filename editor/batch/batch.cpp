@@ -253,17 +253,31 @@ ScenesByName matched_scenes(const BatchOptions& options) {
   return by_name;
 }
 
+// Content of the list of a scene that an earlier version did not finish.
+constexpr const char* unknown_outputs = "unknown\n";
+
 // Marks the state folders in which a log alone does not tell that a batch wrote a result.
 fs::path state_version_file(const BatchOptions& options) { return state_folder(options) / "version-2"; }
 
-// Whether a batch wrote the result of this name: it, or something in it, is listed as written; or its process did not
-// end well. The folder may have been moved since.
+// What a result's batch wrote as far as it is known: by its last run that ended well, and by a run after it that did
+// not.
+std::vector<BatchMark::File> known_outputs(const BatchOptions& options, const std::string& name) {
+  const fs::path state = state_folder(options);
+  const BatchMark done = read_mark(state / (name + ".done"), options.out);
+  if (fs::exists(state / (name + ".done"))) return done.wrote;
+  return latest_outputs(read_mark(state / (name + ".unfinished"), options.out),
+                        read_mark(state / (name + ".files"), options.out));
+}
+
+// Whether a batch wrote the result of this name: it, or something in it, is listed as written; or the batch was one of
+// an earlier version, which kept no lists. The folder may have been moved since.
 bool written_by_batch(const BatchOptions& options, const std::string& name) {
   const fs::path state = state_folder(options), result = fs::weakly_canonical(options.out / name);
-  if (fs::exists(state / (name + ".unfinished"))) return true;
   if (!fs::exists(state_version_file(options)))
     return fs::exists(state / (name + ".log")) || fs::exists(state / (name + ".done"));
-  const std::vector<BatchMark::File> wrote = read_mark(state / (name + ".done")).wrote;
+  if (fs::exists(state / (name + ".unfinished")) && read_file(state / (name + ".unfinished")) == unknown_outputs)
+    return true;
+  const std::vector<BatchMark::File> wrote = known_outputs(options, name);
   return std::any_of(wrote.begin(), wrote.end(), [&](const BatchMark::File& file) {
     const fs::path path = fs::weakly_canonical(file.path);
     if (std::mismatch(result.begin(), result.end(), path.begin(), path.end()).first == result.end()) return true;
@@ -357,9 +371,6 @@ class BatchRun {
   ~BatchRun() {
     std::error_code ignored;
     running_.end();
-    for (const BatchResult& result : results_)
-      if (!result.name.empty() && !fs::exists(options_.out / result.name, ignored))
-        fs::remove(state_file(result, ".unfinished"), ignored);
     fs::remove(sources_, ignored);
   }
   BatchRun(const BatchRun&) = delete;
@@ -398,7 +409,7 @@ class BatchRun {
       if (entry.path().extension() != ".log") continue;
       const std::string name = entry.path().stem().string();
       if (fs::exists(options_.out / name) && !fs::exists(state_folder(options_) / (name + ".done")))
-        write_file_atomically(state_folder(options_) / (name + ".unfinished"), "", {});
+        write_file_atomically(state_folder(options_) / (name + ".unfinished"), unknown_outputs, {});
     }
     write_file_atomically(state_version_file(options_), "", {});
   }
@@ -416,26 +427,23 @@ class BatchRun {
         return false;
       }
       const std::string key = key_of(options_, program_, script_, scenes_[k]);
-      // A rerun that failed left the earlier result's list in the other mark.
-      const fs::path unfinished = state_file(result, ".unfinished");
-      const std::string list_before = fs::exists(mark)         ? read_file(mark)
-                                      : fs::exists(unfinished) ? read_file(unfinished)
-                                                               : "";
-      const BatchMark before = mark_from(list_before);
+      const BatchMark before = read_mark(mark, options_.out);
+      const std::vector<BatchMark::File> outputs = known_outputs(options_, result.name);
       if (options_.resume && is_up_to_date(before, key + inputs_key(options_, scenes_[k]))) {
         result.status = BatchResult::Status::skipped;
         set_quality_message(result, before.below_requested_psnr);
         return false;
       }
-      if (const std::string edited = edited_output(before); !edited.empty()) {
+      if (const std::string edited = edited_output(outputs); !edited.empty()) {
         result.message = fmt::format(
             "{} was changed after the batch wrote it, and would be replaced; move it elsewhere, or remove it", edited);
         return false;
       }
-      for (const BatchMark::File& output : before.wrote) claims_->release(output.path, result.name);
+      for (const BatchMark::File& output : outputs) claims_->release(output.path, result.name);
       // Present while the process runs: a result that appears meanwhile is the batch's own.
+      const fs::path unfinished = state_file(result, ".unfinished");
       fs::remove(unfinished);
-      write_file_atomically(unfinished, list_without_key(list_before), {});
+      write_file_atomically(unfinished, with_relative_outputs(list_of(outputs), options_.out), {});
       fs::remove(mark);
       // Remove these names first: if they are links, their targets must not be overwritten.
       for (const char* ending : {".log", ".files"}) fs::remove(state_file(result, ending));
@@ -454,15 +462,9 @@ class BatchRun {
     // Exit code 4: done, but an export missed the PSNR that the script requires.
     std::error_code error;
     const fs::path unfinished = state_file(result, ".unfinished");
-    if (!fs::exists(options_.out / result.name, error))
-      fs::remove(unfinished, error);
-    else if (!edited_output(mark_from(read_file(unfinished))).empty())
-      write_file_atomically(unfinished, "", {});  // the process replaced the earlier result
     const bool below = WIFEXITED(status) && WEXITSTATUS(status) == 4;
     if (!below && !(WIFEXITED(status) && WEXITSTATUS(status) == 0)) {
       result.message = last_error(state_file(result, ".log"), status);
-      if (const fs::path files = state_file(result, ".files"); fs::exists(files) && fs::exists(unfinished))
-        write_file_atomically(unfinished, read_file(files), {});  // outputs of the lines before the failure
       return;
     }
     if (key_of(options_, program_, script_, scenes_[job.scene]) != job.key) {
@@ -472,7 +474,7 @@ class BatchRun {
     set_quality_message(result, below);
     const std::string files = read_file(state_file(result, ".files"));
     result.status = BatchResult::Status::done;
-    for (const BatchMark::File& output : mark_from(files).wrote)
+    for (const BatchMark::File& output : mark_from(files, options_.out).wrote)
       if (const std::string other = claims_->claim(output.path, result.name); !other.empty()) {
         result.status = BatchResult::Status::failed;
         result.message = fmt::format("{} is also written for {}; put {{name}} into the output path in the script",
@@ -482,7 +484,7 @@ class BatchRun {
       write_file_atomically(
           state_file(result, ".done"),
           json{{"key", job.key + inputs_key(options_, scenes_[job.scene])}, {"below_asked", below}}.dump() + '\n' +
-              files,
+              with_relative_outputs(files, options_.out),
           {});
       fs::remove(unfinished, error);
     }

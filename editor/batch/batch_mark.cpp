@@ -12,7 +12,7 @@ namespace rebake {
 
 namespace fs = std::filesystem;
 
-BatchMark mark_from(const std::string& text) {
+BatchMark mark_from(const std::string& text, const fs::path& out) {
   BatchMark mark;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -23,12 +23,46 @@ BatchMark mark_from(const std::string& text) {
     mark.key = line.value("key", mark.key);
     mark.below_requested_psnr = line.value("below_asked", mark.below_requested_psnr);
     if (line.contains("read")) mark.read.push_back({line.value("read", ""), line.value("content", "")});
-    if (line.contains("wrote")) mark.wrote.push_back({line.value("wrote", ""), line.value("content", "")});
+    if (line.contains("wrote"))
+      mark.wrote.push_back(
+          {(fs::absolute(out) / line.value("wrote", "")).lexically_normal().string(), line.value("content", "")});
   }
   return mark;
 }
 
-BatchMark read_mark(const fs::path& path) { return fs::exists(path) ? mark_from(read_file(path)) : BatchMark(); }
+BatchMark read_mark(const fs::path& path, const fs::path& out) {
+  return fs::exists(path) ? mark_from(read_file(path), out) : BatchMark();
+}
+
+std::string with_relative_outputs(const std::string& mark, const fs::path& out) {
+  std::string text;
+  for (std::size_t begin = 0; begin < mark.size();) {
+    const std::size_t end = std::min(mark.find('\n', begin), mark.size());
+    const std::string line = mark.substr(begin, end - begin);
+    begin = end + 1;
+    nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
+    if (object.is_object() && object.contains("wrote")) {
+      const fs::path relative =
+          fs::weakly_canonical(object.value("wrote", "")).lexically_relative(fs::weakly_canonical(out));
+      if (!relative.empty() && *relative.begin() != "..") {
+        object["wrote"] = relative.string();
+        text += object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+        continue;
+      }
+    }
+    text += line + '\n';
+  }
+  return text;
+}
+
+std::vector<BatchMark::File> latest_outputs(const BatchMark& earlier, const BatchMark& later) {
+  std::vector<BatchMark::File> outputs = later.wrote;
+  for (const BatchMark::File& file : earlier.wrote)
+    if (std::none_of(later.wrote.begin(), later.wrote.end(),
+                     [&](const BatchMark::File& newer) { return newer.path == file.path; }))
+      outputs.push_back(file);
+  return outputs;
+}
 
 bool is_unchanged(const BatchMark::File& file) {
   try {
@@ -43,17 +77,21 @@ bool is_up_to_date(const BatchMark& mark, const std::string& key) {
          std::all_of(mark.wrote.begin(), mark.wrote.end(), is_unchanged);
 }
 
-std::string edited_output(const BatchMark& mark) {
-  const auto edited = std::find_if(mark.wrote.begin(), mark.wrote.end(), [](const BatchMark::File& file) {
+std::string edited_output(const std::vector<BatchMark::File>& outputs) {
+  const auto edited = std::find_if(outputs.begin(), outputs.end(), [](const BatchMark::File& file) {
     std::error_code error;
     return fs::exists(file.path, error) && !is_unchanged(file);
   });
-  return edited == mark.wrote.end() ? "" : edited->path;
+  return edited == outputs.end() ? "" : edited->path;
 }
 
-std::string list_without_key(const std::string& mark) {
-  const std::size_t first = mark.find('\n');
-  return mark.starts_with("{\"below_asked\"") && first != std::string::npos ? mark.substr(first + 1) : mark;
+std::string list_of(const std::vector<BatchMark::File>& outputs) {
+  std::string text;
+  for (const BatchMark::File& output : outputs)
+    text += nlohmann::json{{"wrote", output.path}, {"content", output.content}}.dump(
+                -1, ' ', false, nlohmann::json::error_handler_t::replace) +
+            '\n';
+  return text;
 }
 
 }  // namespace rebake

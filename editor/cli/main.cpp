@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
     fail(error.what());
     return 2;
   } catch (const rebake::Cancelled&) {
-    fail("stopped; nothing was replaced");
+    fail("stopped; the output that was being written is as it was before");
     return 130;
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(error.path1().string() + ": " + error.code().message());

@@ -150,8 +150,9 @@ void render_photographs(const Rendering& options) {
   for (const std::filesystem::path& file : camera_format_for(options.cameras, format).files(options.cameras))
     sources.add_file(file, "a camera file of this run");
   for (const std::filesystem::path& file : capture_files(options.cameras, cameras))
-    sources.add_file(file, "a file of the capture");
-  protect_captures_at(options.out, sources);
+    if (!is_rendered_picture(file)) sources.add_file(file, "a file of the capture");
+  for (const std::filesystem::path& file : captured_files_at(options.out))
+    if (!is_rendered_picture(file)) sources.add_file(file, "a file of the capture there");
   std::vector<View> views;
   std::vector<std::filesystem::path> files;
   const std::vector<std::string> names = photo_names(cameras);

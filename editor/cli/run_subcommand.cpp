@@ -121,6 +121,29 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
   return variables;
 }
 
+// Lists each output as soon as it is complete, for a batch that ends before this run does.
+class WrittenList {
+ public:
+  WrittenList(const Session& session, const RunOptions& options) : session_(session), options_(options) {}
+  void update() {
+    const std::size_t count = session_.exports.size() + session_.outputs.size();
+    if (options_.files.empty() || count == count_) return;
+    count_ = count;
+    std::string lines;
+    for (const std::vector<std::string>* const written : {&session_.exports, &session_.outputs})
+      for (const std::string& path : *written)
+        if (std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
+          lines += line_of("wrote", path, content_hash_at(path));
+    check_list(options_.files);
+    write_file_atomically(options_.files, lines, session_.document.sources());
+  }
+
+ private:
+  const Session& session_;
+  const RunOptions& options_;
+  std::size_t count_ = 0;
+};
+
 // Writes the list of --list-files.
 void write_list(const Session& session, const RunOptions& options, const std::string& script,
                 const std::map<std::string, std::string>& variables) {
@@ -133,7 +156,10 @@ void write_list(const Session& session, const RunOptions& options, const std::st
 void run_lines(Session& session, const RunOptions& options, const std::string& script,
                const std::map<std::string, std::string>& variables) {
   try {
+    WrittenList list(session, options);
+    session.after_line = [&list] { list.update(); };
     run_script(session, script, options.script, variables);
+    session.after_line = nullptr;
     if (!options.out.empty() && !session.exports.empty())
       session.say(fmt::format("note: {} is not written, because the script exports", options.out));
     if (!options.out.empty() && session.exports.empty()) {

@@ -59,6 +59,8 @@ class Document {
   /// cannot restore.
   void keep_journal(const std::filesystem::path& path);
   bool keeps_journal() const { return journal_.has_value(); }
+  /// Whether a journal or a project of this document needs its sources.
+  bool has_saved_work() const { return keeps_journal() || !projects_.empty(); }
   /// Path of the journal; empty without one.
   std::filesystem::path journal_path() const { return journal_ ? journal_->path() : std::filesystem::path(); }
 

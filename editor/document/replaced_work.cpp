@@ -8,9 +8,9 @@
 #include "editor/document/project.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/formats/formats.h"
+#include "render/image.h"
 
 namespace rebake {
 
@@ -20,6 +20,26 @@ bool holds_project(const fs::path& path) {
   std::error_code error;
   return fs::is_regular_file(path, error) && read_file(path).find("\"rebake_project\"") != std::string::npos;
 }
+
+namespace {
+
+// The folder's path without an ending such as _4, which nerfstudio gives to folders of smaller photographs.
+std::string without_scale(const fs::path& folder) {
+  const std::string name = folder.string();
+  const std::size_t last = name.find_last_not_of("0123456789");
+  return last != std::string::npos && last + 1 < name.size() && name[last] == '_' ? name.substr(0, last) : name;
+}
+
+// A picture is taken for a photograph or mask if the cameras name it, or another one in its folder.
+void refuse_replacing_photographs(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  const std::string place = without_scale(fs::weakly_canonical(folder, error));
+  for (const fs::path& file : captured_files_at(folder))
+    if (fs::equivalent(file, path, error) || without_scale(fs::weakly_canonical(file.parent_path(), error)) == place)
+      throw FileError(path, "belongs to a capture: photographs or masks are in its folder; name another folder");
+}
+
+}  // namespace
 
 void refuse_replacing_work(const fs::path& path) {
   Journal::refuse_overwriting(path);
@@ -33,9 +53,7 @@ void refuse_replacing_work(const fs::path& path) {
     for (const fs::path& file : format->files(folder))
       if (fs::equivalent(folder / file, path, error))
         throw FileError(path, "is a file of the scene in its folder; name another file");
-  SourceGuard captures;
-  protect_captures_at(folder, captures);
-  captures.check_file(path);
+  if (!is_rendered_picture(path)) refuse_replacing_photographs(path, folder);
 }
 
 void refuse_replacing_foreign(const fs::path& path) {

@@ -3,9 +3,11 @@
 #include <pybind11/pybind11.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
+#include <set>
 #include <vector>
 
 #include "editor/actions/session.h"
@@ -18,28 +20,40 @@ namespace py = pybind11;
 
 class PyDocument;
 
-/// Sources of all documents of the process: no output of one may replace a source of another. Thread-safe.
+/// Sources of all documents of the process: no output of one may replace a source of another. Exports of the process
+/// may be replaced as long as documents only import them, for notebooks that open what they exported and export it
+/// again. Thread-safe.
 class LiveDocuments {
  public:
-  void publish(const PyDocument* document, SourceGuard sources) {
+  struct Entry {
+    SourceGuard sources;
+    std::vector<std::filesystem::path> imports;  ///< canonical
+    bool holds_work = false;                     ///< edits, a journal or a project depend on the sources
+  };
+  void publish(const PyDocument* document, Entry entry, const std::vector<std::string>& exports) {
     const std::scoped_lock lock(mutex_);
-    sources_[document] = std::move(sources);
+    entries_[document] = std::move(entry);
+    for (const std::string& folder : exports) exports_.insert(std::filesystem::weakly_canonical(folder));
   }
   void forget(const PyDocument* document) {
     const std::scoped_lock lock(mutex_);
-    sources_.erase(document);
+    entries_.erase(document);
   }
   std::vector<SourceGuard> sources_of_others(const PyDocument* document) {
     const std::scoped_lock lock(mutex_);
     std::vector<SourceGuard> others;
-    for (const auto& [other, sources] : sources_)
-      if (other != document && !sources.empty()) others.push_back(sources);
+    for (const auto& [other, entry] : entries_) {
+      const bool made_here = std::all_of(entry.imports.begin(), entry.imports.end(),
+                                         [&](const std::filesystem::path& path) { return exports_.contains(path); });
+      if (other != document && (entry.holds_work || !made_here)) others.push_back(entry.sources);
+    }
     return others;
   }
 
  private:
   std::mutex mutex_;
-  std::map<const PyDocument*, SourceGuard> sources_;
+  std::map<const PyDocument*, Entry> entries_;
+  std::set<std::filesystem::path> exports_;  ///< canonical
 };
 LiveDocuments& live_documents();
 
@@ -96,12 +110,19 @@ class PyDocument {
   }
 
  private:
-  // A document of imports alone loses nothing when they are replaced.
   void publish_sources() {
-    const std::vector<Edit> edits = session_.document.history().edits();
-    const bool any = session_.document.history().redo_count() > 0 ||
-                     std::any_of(edits.begin(), edits.end(), [](const Edit& edit) { return !edit.is<Import>(); });
-    live_documents().publish(this, any ? session_.document.own_sources() : SourceGuard());
+    const Document& document = session_.document;
+    LiveDocuments::Entry entry{
+        document.own_sources(), {}, document.has_saved_work() || document.history().redo_count() > 0};
+    for (const Edit& edit : document.history().edits()) {
+      if (const Import* import = edit.as<Import>())
+        entry.imports.push_back(std::filesystem::weakly_canonical(import->path));
+      else
+        entry.holds_work = true;
+    }
+    std::vector<std::string> written = session_.exports;
+    written.insert(written.end(), session_.outputs.begin(), session_.outputs.end());
+    live_documents().publish(this, std::move(entry), written);
   }
 
   std::mutex mutex_;

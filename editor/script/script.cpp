@@ -121,6 +121,7 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
         session.edit(*edit);
       else
         std::get<Action>(command)(session);
+      if (session.after_line) session.after_line();
     } catch (const json::exception& error) {
       fail("is not valid JSON: " + json_error_message(error));
     } catch (const Cancelled&) {

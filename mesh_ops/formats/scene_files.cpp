@@ -88,9 +88,11 @@ void refuse_foreign_content(const fs::path& folder) {
   for (const auto& [marker, genuine] : markers)
     if (!genuine) refuse(folder / marker);
   const bool known = !markers.empty();
-  const auto is_own_file = [](const std::string& name) {
-    return std::ranges::any_of(
-        formats(), [&](const Format& format) { return format.folder != nullptr && format.folder->is_own_file(name); });
+  // At the top, only files of the formats whose markers are there.
+  const auto is_own_file = [&](const std::string& name, bool top) {
+    return std::ranges::any_of(formats(), [&](const Format& format) {
+      return format.folder != nullptr && format.folder->is_own_file(name) && (!top || markers.contains(format.marker));
+    });
   };
   if (!known && !fs::is_empty(folder)) refuse(fs::directory_iterator(folder)->path());
   std::error_code error;
@@ -98,7 +100,8 @@ void refuse_foreign_content(const fs::path& folder) {
        it.increment(error)) {
     const std::string name = it->path().filename().string();
     if (it->is_symlink()) refuse(it->path());
-    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_own_file(name)) refuse(it->path());
+    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_own_file(name, it.depth() == 0))
+      refuse(it->path());
   }
   if (error) throw FileError(folder, "cannot be read: " + error.message());
 }

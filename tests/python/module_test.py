@@ -161,14 +161,22 @@ class Module(unittest.TestCase):
         source = str(self.at / "source")
         rebake.open(FICUS).export(source)
         reader, writer = rebake.open(source), rebake.open(FICUS)
-        writer.export(source)  # a document without edits loses nothing
+        writer.export(source)  # an own export, which no edit needs
         reader = rebake.open(source)
+        reader.keep_journal(self.at / "j")
+        with self.assertRaisesRegex(rebake.Error, "a source of another open document"):
+            writer.export(source)
         reader.rename(node=reader.nodes[0]["name"], name="edited")
         for write in (writer.save, lambda out: writer.export(out)):
             with self.assertRaisesRegex(rebake.Error, "a source of another open document"):
                 write(source)
         del reader
         writer.export(source)
+        capture = self.at / "capture"
+        shutil.copytree(FICUS, capture)
+        reader = rebake.open(capture)
+        with self.assertRaisesRegex(rebake.Error, "a source of another open document"):
+            writer.export(capture)  # not made by this process
 
     def test_saving_keeps_what_was_saved_meanwhile(self):
         path = str(self.at / "shared.rebake")

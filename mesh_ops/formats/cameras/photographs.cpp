@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/mask_images.h"
 
@@ -73,10 +72,10 @@ std::vector<fs::path> capture_files(const fs::path& camera_file, const std::vect
   return files;
 }
 
-void protect_captures_at(const fs::path& folder, SourceGuard& sources) {
+std::vector<fs::path> captured_files_at(const fs::path& folder) {
   std::error_code error;
   const fs::path whole = fs::weakly_canonical(folder, error);
-  std::vector<fs::path> cameras{whole, whole.parent_path(), whole.parent_path().parent_path()};
+  std::vector<fs::path> cameras{whole, whole.parent_path(), whole.parent_path().parent_path()}, files;
   // Also files of other names, such as transforms_train.json.
   for (const fs::path& place : std::vector(cameras))
     for (auto entry = fs::directory_iterator(place, error); !error && entry != fs::end(entry); entry.increment(error))
@@ -85,12 +84,12 @@ void protect_captures_at(const fs::path& folder, SourceGuard& sources) {
     if (!fs::exists(place, error) || camera_format_at(place) == nullptr) continue;
     try {
       std::vector<std::string> notes;
-      for (const fs::path& file : capture_files(place, read_cameras(place, "", {}, notes)))
-        sources.add_file(file, "a file of the capture there");
+      for (fs::path& file : capture_files(place, read_cameras(place, "", {}, notes))) files.push_back(std::move(file));
     } catch (const Error&) {
       // Unreadable cameras tell nothing about photographs.
     }
   }
+  return files;
 }
 
 }  // namespace rebake

@@ -8,8 +8,6 @@
 
 namespace rebake {
 
-class SourceGuard;
-
 /// The photograph with this name in a folder; its extension may be missing. Empty if it is not there, or if the name
 /// leaves the folder.
 std::filesystem::path photograph_at(const std::filesystem::path& folder, const std::string& name);
@@ -22,7 +20,7 @@ std::filesystem::path capture_folder(const std::filesystem::path& camera_file);
 std::vector<std::filesystem::path> capture_files(const std::filesystem::path& camera_file,
                                                  const std::vector<PhotoCamera>& cameras);
 
-/// Protects the photographs and masks of captures whose camera files lie in a folder, or in the two folders around it.
-void protect_captures_at(const std::filesystem::path& folder, SourceGuard& sources);
+/// The photographs and masks of captures whose camera files lie in a folder, or in the two folders around it.
+std::vector<std::filesystem::path> captured_files_at(const std::filesystem::path& folder);
 
 }  // namespace rebake

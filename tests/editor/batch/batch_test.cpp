@@ -124,6 +124,43 @@ TEST_F(Batch, ResumeKeepsEditedResults) {
   EXPECT_EQ(run()["a"], Status::done);
 }
 
+// A batch or its process was killed after an export: the list that the process wrote so far tells its outputs.
+TEST_F(Batch, OutputsOfAKilledRunAreKnown) {
+  const std::string exported = R"({"op": "export", "out": ")" + options.out.string() + "/{name}\"}\n";
+  write_text(options.script, exported);
+  options.scenes = {(folder_.path() / "scenes/a").string()};
+  const fs::path state = options.out / ".rebake-batch";
+  const auto as_killed = [&] {
+    options.resume = false;
+    ASSERT_EQ(run()["a"], Status::done) << messages["a"];
+    fs::remove(state / "a.done");
+    write_text(state / "a.unfinished", "");
+  };
+  as_killed();
+  options.resume = true;
+  EXPECT_EQ(run()["a"], Status::done) << "an own result that nobody changed: " << messages["a"];
+  as_killed();
+  options.resume = true;
+  std::ofstream(options.out / "a/mlp.json", std::ios::app) << "\n";
+  EXPECT_EQ(run()["a"], Status::failed);
+  EXPECT_NE(messages["a"].find("was changed after the batch wrote it"), std::string::npos) << messages["a"];
+  // Killed before it wrote anything; then a scene is made by hand.
+  fs::remove(state / "a.files");
+  write_text(state / "a.unfinished", "");
+  EXPECT_THROW(run(), FieldError) << "no batch wrote it";
+}
+
+TEST_F(Batch, EditedResultsInAMovedFolderAreKept) {
+  write_text(options.script, R"({"op": "export", "out": ")" + options.out.string() + R"(/x-{name}"})");
+  run();
+  fs::rename(options.out, folder_.path() / "moved");
+  options.out = folder_.path() / "moved";
+  write_text(options.script, R"({"op": "export", "out": ")" + options.out.string() + R"(/x-{name}"})");
+  std::ofstream(options.out / "x-a/mlp.json", std::ios::app) << "\n";
+  EXPECT_EQ(run()["a"], Status::failed);
+  EXPECT_EQ(messages["a"].find("was changed after the batch wrote it") == std::string::npos, false) << messages["a"];
+}
+
 TEST_F(Batch, OutputsOfAFailedFirstRunAreKnown) {
   const std::string line = R"({"op": "export", "out": ")" + options.out.string() + "/{name}\"}\n";
   write_text(options.script, line + "{\"op\": \"typo\"}\n");

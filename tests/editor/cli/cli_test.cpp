@@ -8,6 +8,7 @@
 #include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/images/png_writer.h"
 #include "render/image.h"
 #include "tests/support/made_scenes.h"
 
@@ -175,6 +176,28 @@ TEST_F(Cli, OutputsDoNotReplaceFilesOfOtherScenesAndCaptures) {
     const Outcome refused = rebake_run("run " + in("s.jsonl") + " --var what=" + what + " out=" + in(out));
     EXPECT_EQ(refused.code, 1) << what << refused.text;
     EXPECT_EQ(folder_bytes(in("shoot")), capture) << what;
+  }
+  // Nor photographs that the cameras do not name, or smaller ones.
+  std::filesystem::create_directories(in("nerf/images"));
+  std::filesystem::create_directories(in("nerf/images_4"));
+  std::string cameras = read_file(in("shoot/transforms.json"));
+  cameras.replace(cameras.find("0001.png"), 8, "images/0001.png");
+  write_text(in("nerf/transforms.json"), cameras);
+  const std::string photograph = encode_png(1, 1, 3, std::vector<std::uint8_t>{1, 2, 3}, 1);
+  for (const char* file : {"images/0001.png", "images/0002.png", "images_4/0001.png"}) {
+    write_text(in("nerf/" + std::string(file)), photograph);
+    EXPECT_EQ(rebake_run("render " + in("ball") + " --size 8x8 -o " + in("nerf/" + std::string(file))).code, 1) << file;
+    EXPECT_EQ(read_file(in("nerf/" + std::string(file))), photograph);
+  }
+  // Pictures of its own, and only pictures.
+  for (int twice = 0; twice < 2; ++twice)
+    EXPECT_EQ(rebake_run("render " + in("ball") + " --size 8x8 -o " + in("nerf/images/new.png")).code, 0);
+  for (const char* file : {"notes.tex", "transforms.json", "s.jsonl", "m.obj"}) {
+    write_text(in(file), "precious");
+    const Outcome refused = rebake_run("render " + in("ball") + " --size 8x8 -o " + in(file));
+    EXPECT_EQ(refused.code, 1) << file;
+    EXPECT_NE(refused.text.find("is not a picture"), std::string::npos) << refused.text;
+    EXPECT_EQ(read_file(in(file)), "precious");
   }
   write_text(in("notes.txt"), "precious");
   EXPECT_EQ(rebake_run("light train " + in("ball") +
