@@ -12,6 +12,8 @@ import threading
 import time
 import urllib.parse
 
+from measure_page import measure_page, publish
+
 FRAMES = 15   # per round; the median counts
 PATIENCE = 300  # seconds until a page must have drawn the scene
 
@@ -106,8 +108,9 @@ def camera_of(report):
 
 
 def measure_viewer(page, scene, build, rounds=3):
-    """Medians in ms by name ("frame", "load") as (Rebake, page), the PSNR between both pictures in dB (None: equal), and
-    the size of the picture in pixels."""
+    """Medians in ms by name ("frame", "load") as (Rebake, page), those of the page that Rebake publishes ("load", "rest",
+    "turning"; and "data", "code" in bytes), the PSNR between both pictures in dB (None: equal), and the size of the picture in
+    pixels."""
     program = os.path.join(build, "rebake")
     browser = shutil.which("chromium")
     if not browser:
@@ -118,8 +121,10 @@ def measure_viewer(page, scene, build, rounds=3):
             sys.exit(f"{path} does not exist")
     info = json.loads(subprocess.run([program, "info", scene, "--json"], check=True, stdout=subprocess.PIPE).stdout)
     expected = {"triangles": info["triangles"], "images": 2 * info["texture_sets"], "frames": FRAMES}
-    own, other = {"frame": [], "load": []}, {"frame": [], "load": []}
+    own, other, published = {"frame": [], "load": []}, {"frame": [], "load": []}, {"load": [], "rest": [], "turning": []}
     with tempfile.TemporaryDirectory() as out:
+        folder = os.path.join(out, "published")
+        data, code = publish(program, scene, folder)
         for _ in range(rounds):
             report, picture = view(browser, page, query, scene, expected)
             other["frame"].append(statistics.median(report["frames"]))
@@ -134,10 +139,13 @@ def measure_viewer(page, scene, build, rounds=3):
             own["load"].append(1000 * (time.monotonic() - start))
             times = subprocess.run([*render, "--time", str(FRAMES), "--json"], check=True, stdout=subprocess.PIPE).stdout
             own["frame"].append(json.loads(times)["frame_ms"]["median"])
+            for name, value in measure_page(folder, camera, (report["width"], report["height"]), FRAMES).items():
+                published[name].append(value)
         with open(os.path.join(out, "page.png"), "wb") as file:
             file.write(picture)
         compared = subprocess.run([program, "compare", os.path.join(out, "rebake.png"), os.path.join(out, "page.png"), "--json"],
                                   check=True, stdout=subprocess.PIPE).stdout
     middle = {name: (statistics.median(own[name]), statistics.median(other[name])) for name in own}
     psnr = json.loads(compared)["psnr_db"]
-    return middle, psnr, (report["width"], report["height"])
+    pages = {name: statistics.median(values) for name, values in published.items()} | {"data": data, "code": code}
+    return middle, pages, psnr, (report["width"], report["height"])

@@ -128,6 +128,9 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
     const std::filesystem::path folder = absolute_path(action.report).parent_path();
     if (!std::filesystem::is_directory(folder)) throw FieldError("report", "folder does not exist: " + folder.string());
     if (std::filesystem::is_directory(action.report)) throw FieldError("report", "is a folder; name a file");
+    if (const std::filesystem::path inside = absolute_path(action.report).lexically_relative(absolute_path(action.out));
+        !inside.empty() && *inside.begin() != "..")
+      throw FieldError("report", "lies in the output folder, which is replaced; name a file elsewhere");
     check_report_path(action.report);
   }
   PlainReport report;

@@ -123,12 +123,19 @@ function clustersOf(corners, positions) {
 export async function loadMesh(set) {
   const s = streamsOf(await unpacked(await fileBytes(set.mesh.name)), set), n = set.vertices;
   const positions = new Float32Array(3 * n), texels = new Float32Array(2 * n), rectangles = new Uint16Array(4 * n);
+  const {x, y, z, u, v, left, top, width, height} = s, {step, texelSteps} = set;
   for (let k = 0; k < n; ++k) {
-    positions.set([s.x[k] * set.step, s.y[k] * set.step, s.z[k] * set.step], 3 * k);
-    texels.set([s.left[k] + s.u[k] / set.texelSteps, s.top[k] + s.v[k] / set.texelSteps], 2 * k);
-    rectangles.set([s.left[k], s.top[k], s.left[k] + s.width[k], s.top[k] + s.height[k]], 4 * k);
+    positions[3 * k] = x[k] * step;
+    positions[3 * k + 1] = y[k] * step;
+    positions[3 * k + 2] = z[k] * step;
+    texels[2 * k] = left[k] + u[k] / texelSteps;
+    texels[2 * k + 1] = top[k] + v[k] / texelSteps;
+    rectangles[4 * k] = left[k];
+    rectangles[4 * k + 1] = top[k];
+    rectangles[4 * k + 2] = left[k] + width[k];
+    rectangles[4 * k + 3] = top[k] + height[k];
   }
-  const corners = new Uint32Array(s.corners);
+  const corners = new Uint32Array(s.corners.buffer);
   /** @type {Mesh} */
   const mesh = {corners, positions, texels, rectangles, clusters: clustersOf(corners, positions)};
   if (s.qx) mesh.turns = turnsOf(s, n);
