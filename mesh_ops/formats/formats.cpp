@@ -11,6 +11,7 @@
 #include "mesh_ops/formats/meshes/gltf_scene.h"
 #include "mesh_ops/formats/meshes/obj_scene.h"
 #include "mesh_ops/formats/meshes/ply_scene.h"
+#include "mesh_ops/formats/meshes/write_gltf.h"
 #include "mesh_ops/formats/mobilenerf/baked_files.h"
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
@@ -130,8 +131,8 @@ constexpr Format table[] = {
      read_nerf2mesh, nerf2mesh_files, write_nerf2mesh, &nerf2mesh_folder},
     {"obj", "OBJ", "textured meshes", obj_extension, false, true, is_single_file<obj_extension>,
      read_single_file<read_obj_object>, obj_files, nullptr, nullptr},
-    {"glb", "glTF", "textured meshes", glb_extension, false, true, is_single_file<glb_extension>,
-     read_single_file<read_gltf_object>, gltf_files, nullptr, nullptr},
+    {"glb", "glTF", "meshes of mean colours, for modelling programs", glb_extension, false, true, is_single_file<glb_extension>,
+     read_single_file<read_gltf_object>, gltf_files, write_gltf, nullptr},
     {"gltf", "glTF", "textured meshes", gltf_extension, false, true, is_single_file<gltf_extension>,
      read_single_file<read_gltf_object>, gltf_files, nullptr, nullptr},
     {"ply", "PLY", "textured or coloured meshes", ply_extension, false, true, is_single_file<ply_extension>,
@@ -179,8 +180,9 @@ const char* read_formats_help() {
 }
 
 const Format& format_named(const std::string& name) {
+  const std::string known = name == "gltf" ? "glb" : name;  // binary glTF is the form that is written
   for (const Format& format : formats())
-    if (format.name == name && format.write != nullptr) return format;
+    if (format.name == known && format.write != nullptr) return format;
   throw FieldError("format", fmt::format("\"{}\" is not known (known: {})", name, fmt::join(written_formats(), ", ")));
 }
 

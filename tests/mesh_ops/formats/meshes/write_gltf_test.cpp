@@ -1,0 +1,136 @@
+// Scenes as glTF: places, mean colours, names, cameras. Read back by Rebake's reader, and as JSON.
+#include "mesh_ops/formats/meshes/write_gltf.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/features/distill/diffuse_network.h"
+#include "mesh_ops/features/distill/mean_colors.h"
+#include "mesh_ops/formats/meshes/gltf_scene.h"
+#include "mesh_ops/index/index.h"
+#include "tests/support/document_fixture.h"
+
+namespace rebake::test {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+class WriteGltf : public DocumentTest {
+ protected:
+  WriteGltf() {
+    import(document_);
+    act(document_, R"({"op": "transform", "node": "ball", "translate": [5, 0, 0], "scale": 2})");
+    act(document_, R"({"op": "group", "nodes": ["ball"], "as": "all"})");
+    act(document_, R"({"op": "view", "name": "front \"one\"", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0]}})");
+  }
+  json written(const fs::path& file) const {
+    report_ = write_gltf(document_.scene(), file, {}, {});
+    const std::string bytes = read_file(file);
+    std::size_t length = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+      length |= static_cast<std::size_t>(static_cast<unsigned char>(bytes[12 + k])) << (8 * k);
+    EXPECT_EQ(bytes.size() % 4, 0U);
+    return json::parse(bytes.substr(20, length));
+  }
+  Document document_;
+  mutable ExportReport report_;
+};
+
+TEST_F(WriteGltf, HasTheTreeNamesAndCamerasOfTheScene) {
+  const json root = written(path("a.glb"));
+  const json& nodes = root.at("nodes");
+  const json& scene = root.at("scenes")[0].at("nodes");
+  ASSERT_EQ(scene.size(), 2U);
+  const json& group = nodes[scene[0].get<std::size_t>()];
+  EXPECT_EQ(group.at("name"), "all");
+  const json& ball = nodes[group.at("children")[0].get<std::size_t>()];
+  EXPECT_EQ(ball.at("name"), "ball");
+  EXPECT_EQ(ball.at("matrix")[0], 2);
+  EXPECT_EQ(ball.at("matrix")[12], 5);
+  const json& view = nodes[scene[1].get<std::size_t>()];
+  EXPECT_EQ(view.at("name"), "front \"one\"");
+  EXPECT_EQ(view.at("matrix")[14], 4);
+  EXPECT_NEAR(root.at("cameras")[0].at("perspective").at("yfov").get<double>(), 39 * std::numbers::pi / 180, 1e-12);
+  EXPECT_EQ(root.at("extensionsUsed"), json::array({"KHR_materials_unlit"}));
+  EXPECT_FALSE(root.contains("extensionsRequired"));
+  EXPECT_NE(report_.notes[0].find("loses its view dependence"), std::string::npos) << report_.notes[0];
+}
+
+TEST_F(WriteGltf, TrianglesStayInPlaceAndHolesStayHoles) {
+  written(path("a.glb"));
+  const auto back = read_gltf_object(path("a.glb"));
+  const PlacedNode placed = *find_placed(document_.scene(), find(document_.scene(), "ball")->id);
+  Box before;
+  for (const Vec3& p : placed.node->object->sets[0].soup.positions()) before.extend(placed.to_world * p);
+  EXPECT_LE((back->bounds().min() - before.min()).norm(), 1e-5);
+  EXPECT_LE((back->bounds().max() - before.max()).norm(), 1e-5);
+  EXPECT_GT(back->opaque_texel_count(), 0U);
+  // Only what shows is written, so all triangles have opaque texels; holes are among their texels.
+  EXPECT_LE(back->triangle_count(), placed.node->object->triangle_count());
+  const TexelReader texels(*back->sets[0].texels);
+  std::size_t holes = 0;
+  for (int y = 0; y < back->sets[0].texels->height(); ++y)
+    for (int x = 0; x < back->sets[0].texels->width(); ++x) holes += texels.at(x, y).opaque() ? 0 : 1;
+  EXPECT_GT(holes, 0U);
+}
+
+// Every direction shows the same colour, so nothing is lost, and the bytes are the object's own.
+TEST_F(WriteGltf, ColoursWithoutViewDependenceAreKept) {
+  auto object = std::make_shared<BakedObject>(*find(document_.scene(), "ball")->object);
+  object->decoder = std::make_shared<const Decoder>(diffuse_decoder());
+  object->dialect.alpha = AlphaCode::plain;
+  const auto texels = FeatureTexture::from_rows(
+      object->sets[0].texels->width(), object->sets[0].texels->height(), AlphaCode::plain, [&](int y, Texel* row) {
+        for (int x = 0; x < object->sets[0].texels->width(); ++x)
+          row[x] = {{255, static_cast<std::uint8_t>(x % 256), static_cast<std::uint8_t>(y % 256), 77}, {0, 0, 0, 255}};
+      });
+  object->sets[0].texels = std::make_shared<const FeatureTexture>(texels);
+  const Scene scene = scene_of(object);
+  const std::vector<PlacedNode> placed = placed_nodes(scene);
+  const SceneRays rays = rays_through(placed);
+  MeanColorLoss loss;
+  const MeanColors colors = mean_colors(object->sets[0], placed[0], rays, 2, 32, loss);
+  // Single precision of the network's evaluation remains.
+  EXPECT_GE(loss.psnr_db(), 99);
+  std::size_t shown = 0;
+  for (int y = 0; y < colors.height; ++y)
+    for (int x = 0; x < colors.width; ++x) {
+      const auto k =
+          4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(colors.width) + static_cast<std::size_t>(x));
+      if (colors.rgba[k + 3] == 0) continue;
+      ++shown;
+      // Texels beside a triangle have a neighbour's colour.
+      EXPECT_LE(std::abs(colors.rgba[k] - x % 256), 2);
+      EXPECT_LE(std::abs(colors.rgba[k + 1] - y % 256), 2);
+      EXPECT_EQ(colors.rgba[k + 2], 77);
+    }
+  EXPECT_GT(shown, 1000U);
+}
+
+// The mean of two lobes is between them, and the loss is that of a known variance.
+TEST_F(WriteGltf, LossIsTheDeviationFromTheMean) {
+  MeanColorLoss loss;
+  loss.squares = 0.01 * 12;
+  loss.weight = 12;
+  EXPECT_NEAR(loss.psnr_db(), 20, 1e-12);
+  EXPECT_EQ(MeanColorLoss().psnr_db(), 100);
+}
+
+TEST_F(WriteGltf, ReplacesOnlyItsOwnFiles) {
+  for (int twice = 0; twice < 2; ++twice) written(path("a.glb"));
+  write_text(path("b.glb"), "mine");
+  EXPECT_THROW(write_gltf(document_.scene(), path("b.glb"), {}, {}), FileError);
+  EXPECT_EQ(read_file(path("b.glb")), "mine");
+  EXPECT_THROW(write_gltf(document_.scene(), path("c.gltf"), {}, {}), FieldError);
+  EXPECT_THROW(write_gltf({}, path("c.glb"), {}, {}), EditError);
+  EXPECT_THROW(write_gltf(document_.scene(), path("c.glb"), {.layout = Layout::split, .sources = {}}, {}), FieldError);
+}
+
+}  // namespace
+}  // namespace rebake::test
