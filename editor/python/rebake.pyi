@@ -106,12 +106,12 @@ class Document:
         """The texels by tile row and column, 256 × 256 × 8 per tile (feat0 RGBA, feat1 RGBA); read-only, unpacked by each call."""
     def texture(self, node: Node, texture_set: int = 0) -> NDArray[np.uint8]:
         """All texels as one array, height × width × 8; a copy."""
-    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None, format: Literal["mobilenerf", "rebake", "nerf2mesh", "glb"] = "mobilenerf", plain: bool = False, width: int | Literal["auto"] | None = None, way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto", psnr: float | None = None, seconds: float = 0.0, report: str | PathLike[str] = "", page_size: int | None = None, picture_size: int = 800, nodes: Sequence[Node] | None = None) -> list[str]:
+    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None, format: Literal["mobilenerf", "rebake", "nerf2mesh", "gltf"] = "mobilenerf", plain: bool = False, width: int | Literal["auto"] | None = None, way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto", psnr: float | None = None, seconds: float = 0.0, report: str | PathLike[str] = "", page_size: int | None = None, picture_size: int = 800, nodes: Sequence[Node] | None = None) -> list[str]:
         """Exports the scene; returns notes about conversions and losses, and with plain the measured errors.
 
         path: folder to write
         layout: layout of the output; default: as read
-        format: mobilenerf: for the published viewers; rebake: keeps every node; nerf2mesh: only scenes of such folders; glb: meshes of mean colours, for modelling programs
+        format: mobilenerf: for the published viewers; rebake: keeps every node; nerf2mesh: only scenes of such folders; gltf: meshes of mean colours, for modelling programs
         plain: write one folder for any scene: if no decoder represents it exactly, or light changes colours, one is fitted
         width: plain: maximum width of the decoder's hidden layers, 4 to 256, or auto
         way: plain: keep one decoder, fine-tune it, train a new one, or put all side by side; default: the best

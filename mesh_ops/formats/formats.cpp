@@ -131,9 +131,9 @@ constexpr Format table[] = {
      read_nerf2mesh, nerf2mesh_files, write_nerf2mesh, &nerf2mesh_folder},
     {"obj", "OBJ", "textured meshes", obj_extension, false, true, is_single_file<obj_extension>,
      read_single_file<read_obj_object>, obj_files, nullptr, nullptr},
-    {"glb", "glTF", "meshes of mean colours, for modelling programs", glb_extension, false, true, is_single_file<glb_extension>,
-     read_single_file<read_gltf_object>, gltf_files, write_gltf, nullptr},
-    {"gltf", "glTF", "textured meshes", gltf_extension, false, true, is_single_file<gltf_extension>,
+    {"gltf", "glTF", "meshes of mean colours, for modelling programs", glb_extension, false, true,
+     is_single_file<glb_extension>, read_single_file<read_gltf_object>, gltf_files, write_gltf, nullptr},
+    {"gltf_text", "glTF", "textured meshes", gltf_extension, false, true, is_single_file<gltf_extension>,
      read_single_file<read_gltf_object>, gltf_files, nullptr, nullptr},
     {"ply", "PLY", "textured or coloured meshes", ply_extension, false, true, is_single_file<ply_extension>,
      read_single_file<read_ply_object>, ply_files, nullptr, nullptr},
@@ -180,9 +180,8 @@ const char* read_formats_help() {
 }
 
 const Format& format_named(const std::string& name) {
-  const std::string known = name == "gltf" ? "glb" : name;  // binary glTF is the form that is written
   for (const Format& format : formats())
-    if (format.name == known && format.write != nullptr) return format;
+    if (format.name == name && format.write != nullptr) return format;
   throw FieldError("format", fmt::format("\"{}\" is not known (known: {})", name, fmt::join(written_formats(), ", ")));
 }
 

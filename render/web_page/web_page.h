@@ -22,7 +22,7 @@ struct WebPageOptions {
   bool single_file = false;  ///< everything in index.html, which then works without a server
 };
 
-/// A page as files, and what was decided for it.
+/// A page as files, and the decisions for it.
 struct WebPage {
   std::map<std::string, std::string> files;  ///< relative path → bytes
   std::size_t triangles = 0;
