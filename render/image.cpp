@@ -53,6 +53,14 @@ std::string with_software(const std::string& png) {
          png.substr(after_header);
 }
 
+// Adds a comment that names the program, after the start of the image (JPEG, section B.2.4.5).
+std::string with_comment(const std::string& jpeg) {
+  constexpr std::size_t start = 2, length_field = 2;
+  const std::string comment = "Rebake";
+  return jpeg.substr(0, start) + "\xff\xfe" + '\0' + static_cast<char>(comment.size() + length_field) + comment +
+         jpeg.substr(start);
+}
+
 // The first bytes of a file; fewer if it is shorter.
 std::string beginning_of(const std::filesystem::path& path) {
   std::string bytes(64, '\0');
@@ -91,7 +99,7 @@ std::string encoded(const Image& image, const std::filesystem::path& path) {
     done = codecs.encode(format->name, image.width, image.height, image.rgb.data(), bytes, error);
   }
   if (!done) throw FileError(path, "cannot be encoded: " + picture_problem(error, path));
-  return bytes;
+  return format->name == std::string_view("jpeg") ? with_comment(bytes) : bytes;
 }
 
 }  // namespace
@@ -133,7 +141,8 @@ void check_picture_path(const std::filesystem::path& path, const SourceGuard& gu
 
 bool is_rendered_picture(const std::filesystem::path& path) {
   const std::string bytes = beginning_of(path);
-  return bytes.starts_with("\x89PNG") && bytes.find(software_text) != std::string::npos;
+  return (bytes.starts_with("\x89PNG") && bytes.find(software_text) != std::string::npos) ||
+         bytes.starts_with(std::string_view("\xff\xd8\xff\xfe\0\x08Rebake", 12));
 }
 
 void write_picture(const Image& image, const std::filesystem::path& path, const SourceGuard& guard) {

@@ -24,7 +24,7 @@ std::string picture_extensions();
 /// Throws FileError if write_picture() would reject the path: its extension is that of a format that cannot be written,
 /// `guard` protects it, or it exists and is not a picture. For a check before expensive work.
 void check_picture_path(const std::filesystem::path& path, const SourceGuard& guard);
-/// Whether a file is a PNG that write_picture() made.
+/// Whether a file is a PNG or JPEG that write_picture() made.
 bool is_rendered_picture(const std::filesystem::path& path);
 /// Writes a picture file atomically: PNG and WebP without loss, JPEG with quality 95, or OpenEXR with linear
 /// light (IEC 61966-2-1) in half floats. Unknown extensions mean PNG. Throws FileError, also if `guard` protects the

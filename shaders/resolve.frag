@@ -6,9 +6,9 @@ uniform usampler2D features;
 #if WRITES_FRAME
 uniform usampler2D frames;
 // 4 entries per frame: columns of camera_to_fed; decoder, alpha factor, alpha offset
-#if FRAME_UNIFORMS
-uniform vec4 frame_table[4 * FRAME_UNIFORMS];
-vec4 frame_entry(int k) { return frame_table[k]; }
+#if FRAME_TEXTURE
+uniform sampler2D frame_table;  // a row per frame
+vec4 frame_entry(int k) { return texelFetch(frame_table, ivec2(k & 3, k >> 2), 0); }
 #else
 uniform samplerBuffer frame_table;
 vec4 frame_entry(int k) { return texelFetch(frame_table, k); }

@@ -31,11 +31,13 @@ void refuse_other_folder(const fs::path& folder) {
   if (fs::is_empty(folder)) return;
   if (!is_page(folder / "index.html"))
     throw FileError(folder, "exists and is not a published page; choose a new or empty folder");
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name != "index.html" && name != "scene.json" && name != "data" && name != "viewer")
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const fs::path inside = entry.path().lexically_relative(folder);
+    const bool is_own = entry.is_directory() ? inside == "data" || inside == "viewer" : is_page_file(inside);
+    if (!is_own || entry.is_symlink())
       throw FileError(
-          folder, fmt::format("contains \"{}\", which is not part of its page; choose a new or empty folder", name));
+          folder,
+          fmt::format("contains \"{}\", which is not part of its page; choose a new or empty folder", inside.string()));
   }
 }
 
@@ -48,8 +50,12 @@ void refuse_other_file(const fs::path& file) {
 
 WebPageOptions options_of(const Scene& scene, const PublishAction& action) {
   WebPageOptions options;
-  options.title = !action.title.empty() ? action.title : fs::path(absolute_path(action.out)).stem().string();
+  options.title =
+      !action.title.empty()
+          ? action.title
+          : (action.single_file ? absolute_path(action.out).stem() : absolute_path(action.out).filename()).string();
   options.single_file = action.single_file;
+  options.up = scene.ground.normal;
   options.home = resolve_view(scene, action.camera, action.view, 800, 800, 4).camera;
   for (const std::string& name : action.views.empty() ? view_names(scene) : action.views)
     options.views[name] = fitted(scene, stored_view(scene, name, "views"), 1);
@@ -80,6 +86,7 @@ void run(Session& session, const PublishAction& action) {
     session.outputs.push_back(action.out);
     session.say(fmt::format("published {}: {} triangles, {:.2f} MB", action.out, page.triangles,
                             static_cast<double>(bytes_of(page)) / 1e6));
+    if (!action.single_file) session.say(fmt::format("to preview it: python3 -m http.server -d '{}'", action.out));
     for (const std::string& decision : page.decisions) session.report(decision);
   };
   if (action.single_file) {

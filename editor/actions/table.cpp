@@ -2,7 +2,8 @@
 
 // Table of all actions, in help order.
 #define REBAKE_ACTIONS(X) \
-  X(RenderAction) X(ExportAction) X(PublishAction) X(SaveAction) X(SaveProjectAction) X(ExportViewsAction) X(UndoAction) X(RedoAction)
+  X(RenderAction)         \
+  X(ExportAction) X(PublishAction) X(SaveAction) X(SaveProjectAction) X(ExportViewsAction) X(UndoAction) X(RedoAction)
 
 namespace rebake {
 

@@ -154,7 +154,7 @@ class Processes {
  public:
   struct Job {
     std::size_t scene;
-    std::string key;
+    std::string key, inputs;  // inputs: inputs_key() before the process started
     Clock::time_point since;
     std::unique_ptr<FileLock> lock;  // of the scene's result
   };
@@ -259,8 +259,7 @@ constexpr const char* unknown_outputs = "unknown\n";
 // Marks the state folders in which a log alone does not tell that a batch wrote a result.
 fs::path state_version_file(const BatchOptions& options) { return state_folder(options) / "version-2"; }
 
-// What a result's batch wrote as far as it is known: by its last run that ended well, and by a run after it that did
-// not.
+// The outputs of a scene that are known: of its last run that ended well, and of a run after it that did not.
 std::vector<BatchMark::File> known_outputs(const BatchOptions& options, const std::string& name) {
   const fs::path state = state_folder(options);
   const BatchMark done = read_mark(state / (name + ".done"), options.out);
@@ -293,6 +292,8 @@ void check_results(const BatchOptions& options, const ScenesByName& scenes) {
     if (fs::is_symlink(result, error))
       throw FieldError(
           "--out", fmt::format("{} is a link, whose target would be replaced; choose another folder", result.string()));
+    // A scene that is being processed, or whose last run was killed, is checked when its turn comes.
+    if (fs::exists(state_folder(options) / (name + ".unfinished"), error)) continue;
     if (fs::exists(result, error) && !written_by_batch(options, name))
       throw FieldError("--out", fmt::format("{} exists, but no batch wrote it; move it away, or choose another folder",
                                             result.string()));
@@ -429,18 +430,34 @@ class BatchRun {
       const std::string key = key_of(options_, program_, script_, scenes_[k]);
       const BatchMark before = read_mark(mark, options_.out);
       const std::vector<BatchMark::File> outputs = known_outputs(options_, result.name);
-      if (options_.resume && is_up_to_date(before, key + inputs_key(options_, scenes_[k]))) {
+      const std::string inputs = inputs_key(options_, scenes_[k]);
+      if (options_.resume && is_up_to_date(before, key + inputs)) {
         result.status = BatchResult::Status::skipped;
         set_quality_message(result, before.below_requested_psnr);
         return false;
       }
-      if (const std::string edited = edited_output(outputs); !edited.empty()) {
+      if (fs::exists(options_.out / result.name) && !written_by_batch(options_, result.name)) {
+        result.message = fmt::format(
+            "{} exists, but no run of the batch is known to have written it; check it, then move it elsewhere or "
+            "remove it",
+            (options_.out / result.name).string());
+        return false;
+      }
+      if (const std::string edited = edited_output(outputs);
+          !edited.empty() && fs::exists(state_file(result, ".done"))) {
         result.message = fmt::format(
             "{} was changed after the batch wrote it, and would be replaced; move it elsewhere, or remove it", edited);
         return false;
       }
+      if (const std::string edited = edited_output(outputs); !edited.empty()) {
+        // A run that was killed may have replaced it before it could say so.
+        result.message = fmt::format(
+            "{} is not as the last run that ended well wrote it; check it, then move it elsewhere or remove it",
+            edited);
+        return false;
+      }
       for (const BatchMark::File& output : outputs) claims_->release(output.path, result.name);
-      // Present while the process runs: a result that appears meanwhile is the batch's own.
+      // Present until the process has ended well; with `.files` it tells what is there.
       const fs::path unfinished = state_file(result, ".unfinished");
       fs::remove(unfinished);
       write_file_atomically(unfinished, with_relative_outputs(list_of(outputs), options_.out), {});
@@ -448,7 +465,7 @@ class BatchRun {
       // Remove these names first: if they are links, their targets must not be overwritten.
       for (const char* ending : {".log", ".files"}) fs::remove(state_file(result, ending));
       running_.add(start(options_, scenes_[k], state_file(result, ".log"), state_file(result, ".files"), sources_),
-                   {k, key, Clock::now(), std::move(lock)});
+                   {k, key, inputs, Clock::now(), std::move(lock)});
       return true;
     } catch (const FileError& why) {
       result.message = why.what();
@@ -481,11 +498,10 @@ class BatchRun {
                                      output.path, other);
       }
     if (result.status == BatchResult::Status::done) {
-      write_file_atomically(
-          state_file(result, ".done"),
-          json{{"key", job.key + inputs_key(options_, scenes_[job.scene])}, {"below_asked", below}}.dump() + '\n' +
-              with_relative_outputs(files, options_.out),
-          {});
+      write_file_atomically(state_file(result, ".done"),
+                            json{{"key", job.key + job.inputs}, {"below_asked", below}}.dump() + '\n' +
+                                with_relative_outputs(files, options_.out),
+                            {});
       fs::remove(unfinished, error);
     }
   }

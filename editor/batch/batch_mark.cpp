@@ -25,7 +25,7 @@ BatchMark mark_from(const std::string& text, const fs::path& out) {
     if (line.contains("read")) mark.read.push_back({line.value("read", ""), line.value("content", "")});
     if (line.contains("wrote"))
       mark.wrote.push_back(
-          {(fs::absolute(out) / line.value("wrote", "")).lexically_normal().string(), line.value("content", "")});
+          {fs::weakly_canonical(fs::absolute(out) / line.value("wrote", "")).string(), line.value("content", "")});
   }
   return mark;
 }

@@ -41,6 +41,12 @@ nlohmann::json number_or_text(const std::string& text) {
   return text;
 }
 
+// An object or list as JSON; otherwise as number_or_text().
+nlohmann::json json_or_text(const std::string& text) {
+  nlohmann::json value = nlohmann::json::parse(text, nullptr, false);
+  return value.is_structured() ? value : number_or_text(text);
+}
+
 }  // namespace
 
 void FieldOptions::add_to(SubcommandDescription& command, const std::vector<FieldInfo>& fields,
@@ -69,7 +75,7 @@ nlohmann::json FieldOptions::object() const {
     if (!value.list.empty()) object[name] = value.list;
     if (value.text.empty()) continue;
     const bool is_text = value.kind == FieldKind::text || value.kind == FieldKind::choice;
-    object[name] = is_text ? nlohmann::json(value.text) : number_or_text(value.text);
+    object[name] = is_text ? nlohmann::json(value.text) : json_or_text(value.text);
   }
   return object;
 }

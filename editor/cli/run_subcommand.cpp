@@ -125,23 +125,31 @@ std::map<std::string, std::string> variables_of(const RunOptions& options) {
 class WrittenList {
  public:
   WrittenList(const Session& session, const RunOptions& options) : session_(session), options_(options) {}
+  // Lists the outputs that were added since. Throws FileError.
   void update() {
-    const std::size_t count = session_.exports.size() + session_.outputs.size();
-    if (options_.files.empty() || count == count_) return;
-    count_ = count;
-    std::string lines;
-    for (const std::vector<std::string>* const written : {&session_.exports, &session_.outputs})
-      for (const std::string& path : *written)
-        if (std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
-          lines += line_of("wrote", path, content_hash_at(path));
+    if (options_.files.empty()) return;
+    const std::size_t before = exports_ + outputs_;
+    add(session_.exports, exports_);
+    add(session_.outputs, outputs_);
+    if (exports_ + outputs_ == before) return;
+    std::string text;
+    for (const auto& [path, line] : lines_) text += line;
     check_list(options_.files);
-    write_file_atomically(options_.files, lines, session_.document.sources());
+    write_file_atomically(options_.files, text, session_.document.sources());
   }
 
  private:
+  void add(const std::vector<std::string>& written, std::size_t& count) {
+    for (; count < written.size(); ++count)
+      if (const std::filesystem::path path = absolute_path(written[count]);
+          std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
+        lines_[path] = line_of("wrote", path, content_hash_at(path));
+  }
+
   const Session& session_;
   const RunOptions& options_;
-  std::size_t count_ = 0;
+  std::size_t exports_ = 0, outputs_ = 0;               // that are listed
+  std::map<std::filesystem::path, std::string> lines_;  // of the newest content
 };
 
 // Writes the list of --list-files.
@@ -155,8 +163,8 @@ void write_list(const Session& session, const RunOptions& options, const std::st
 // Runs the script, exports and lists files as the options say.
 void run_lines(Session& session, const RunOptions& options, const std::string& script,
                const std::map<std::string, std::string>& variables) {
+  WrittenList list(session, options);
   try {
-    WrittenList list(session, options);
     session.after_line = [&list] { list.update(); };
     run_script(session, script, options.script, variables);
     session.after_line = nullptr;
@@ -169,8 +177,6 @@ void run_lines(Session& session, const RunOptions& options, const std::string& s
     }
     write_list(session, options, script, variables);
   } catch (const Error&) {
-    // Its outputs are there, and a batch must know them.
-    if (!session.exports.empty() || !session.outputs.empty()) write_list(session, options, script, variables);
     if (!options.journal.empty())
       session.say(fmt::format("the edits so far are in {0}; to recover them: rebake recover {0} -o FILE.rebake",
                               options.journal));

@@ -337,7 +337,7 @@ std::vector<std::string> Document::save(const fs::path& project, const Progress&
   std::vector<History::Entry> entries = history_.entries();
   entries.erase(entries.begin() + static_cast<std::ptrdiff_t>(history_.undo_count()), entries.end());
   // Two programs that save to one project do so one after the other, so that the second sees what the first wrote.
-  const FolderLock lock(project.parent_path());
+  const FolderLock lock(fs::weakly_canonical(project).parent_path());
   check_project(project, other);
   const bool is_known = projects_.contains(fs::weakly_canonical(project));
   const std::vector<std::string> before =

@@ -33,7 +33,8 @@ class LiveDocuments {
   void publish(const PyDocument* document, Entry entry, const std::vector<std::string>& exports) {
     const std::scoped_lock lock(mutex_);
     entries_[document] = std::move(entry);
-    for (const std::string& folder : exports) exports_.insert(std::filesystem::weakly_canonical(folder));
+    std::error_code error;
+    for (const std::string& folder : exports) exports_.insert(std::filesystem::weakly_canonical(folder, error));
   }
   void forget(const PyDocument* document) {
     const std::scoped_lock lock(mutex_);
@@ -114,9 +115,10 @@ class PyDocument {
     const Document& document = session_.document;
     LiveDocuments::Entry entry{
         document.own_sources(), {}, document.has_saved_work() || document.history().redo_count() > 0};
+    std::error_code error;
     for (const Edit& edit : document.history().edits()) {
       if (const Import* import = edit.as<Import>())
-        entry.imports.push_back(std::filesystem::weakly_canonical(import->path));
+        entry.imports.push_back(std::filesystem::weakly_canonical(scene_root(import->path), error));
       else
         entry.holds_work = true;
     }

@@ -163,7 +163,8 @@ void prepare_study_folder(const Study& study, const std::filesystem::path& folde
     throw FileError(base + ".csv", "is not a table of an earlier study; choose another folder");
   for (const char* ending : {".svg", ".png", "-2.svg", "-2.png"})
     if (!has_table && std::filesystem::exists(base + ending, error))
-      throw FileError(base + ending, "is not a plot of an earlier study, because its table is missing; choose another folder");
+      throw FileError(base + ending,
+                      "is not a plot of an earlier study, because its table is missing; choose another folder");
 }
 
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,

@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <thread>
 
 #include "mesh_ops/base/error.h"
 
@@ -20,7 +22,14 @@ FileLock::~FileLock() { ::close(file_); }
 
 FolderLock::FolderLock(const std::filesystem::path& folder)
     : folder_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  while (folder_ >= 0 && ::flock(folder_, LOCK_EX) != 0 && errno == EINTR) {
+  constexpr std::chrono::milliseconds patience{10000}, pause{20};
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (folder_ >= 0 && ::flock(folder_, LOCK_EX | LOCK_NB) != 0 && (errno == EWOULDBLOCK || errno == EINTR)) {
+    if (std::chrono::steady_clock::now() > end) {
+      ::close(folder_);
+      throw FileError(folder, "is locked by another program that writes a project there; try again");
+    }
+    std::this_thread::sleep_for(pause);
   }
 }
 

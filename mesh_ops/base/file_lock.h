@@ -22,10 +22,11 @@ class FileLock {
   bool held_;
 };
 
-/// Exclusive lock on a folder among processes, which waits until it is free. Without effect for folders that cannot be
-/// opened and on file systems without locks.
+/// Exclusive lock on a folder among processes. Without effect for folders that cannot be opened and on file systems
+/// without locks.
 class FolderLock {
  public:
+  /// Waits up to ten seconds; then throws FileError.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

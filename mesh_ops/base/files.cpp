@@ -404,8 +404,13 @@ void AtomicFolder::commit() {
       try {
         check_replaced(staging_);
       } catch (...) {
-        if (file_calls().rename(staging_.c_str(), target_.c_str(), RENAME_EXCHANGE) != 0) staging_.clear();
-        throw;
+        if (file_calls().rename(staging_.c_str(), target_.c_str(), RENAME_EXCHANGE) == 0) throw;
+        // The old folder keeps a name that no clean-up removes.
+        const fs::path aside = staging_.string() + ".old";
+        const bool moved = file_calls().rename(staging_.c_str(), aside.c_str(), 0) == 0;
+        const fs::path kept = moved ? aside : staging_;
+        staging_.clear();
+        throw FileError(target_, "received other files while it was replaced; they are in " + kept.string());
       }
       old = staging_;
     } else {

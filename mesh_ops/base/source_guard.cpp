@@ -117,7 +117,7 @@ void SourceGuard::add_all(const SourceGuard& other, const std::string& role) {
     source.role = role;
     source.replaceable = false;
     source.owner.clear();
-    // What is known keeps its role.
+    // A known source keeps its role.
     for (const Source& known : sources_)
       if (known.path == source.path && known.is_folder == source.is_folder) source.role = known.role;
     add_source(std::move(source));

@@ -27,7 +27,7 @@ class SourceGuard {
   /// Protects the contents of a scene folder, but allows replacing the whole folder: a script may import its own export
   /// and run again.
   void add_contents(const std::filesystem::path& folder, const std::string& role, IsScene is_scene);
-  /// Protects all that another guard protects, without the replacements that add_contents() allows there.
+  /// Protects all sources of another guard, without the replacements that add_contents() allows there.
   void add_all(const SourceGuard& other, const std::string& role);
   /// Undoes add_contents() after the run has replaced the folder.
   void release_contents(const std::filesystem::path& folder);

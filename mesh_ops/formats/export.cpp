@@ -216,8 +216,6 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     if (object.axes == Axes::forward)
       report.notes.emplace_back(
           "the format does not record that this is a forward-facing scene: open it with --axes forward");
-    if (object.dialect != Dialect{})
-      report.notes.emplace_back("the folder is in the dialect in which it was read; open it with the same options");
     write_baked_folder(out, {}, object, object.layout, report.notes, progress, false, options.page_side);
   } else {
     report.notes.push_back(

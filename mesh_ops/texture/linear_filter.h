@@ -8,7 +8,7 @@
 namespace rebake {
 
 // Linear filtering by finer textures: every texel becomes factor × factor texels that hold the linearly filtered bytes
-// at their centres, and all else samples them by the nearest. With an odd factor the centre of each block is the
+// at their centres, and all other code uses nearest sampling. With an odd factor the centre of each block is the
 // texel's own centre, so the original bytes are kept there, and block_centers() undoes subdivided().
 //
 // Error of a byte against linear filtering: at most 1/2 by rounding, plus (|Δu| + |Δv|) / (2 · factor), where Δu and Δv

@@ -1,6 +1,8 @@
 #include "render/web_page/page_text.h"
 
+#include <algorithm>
 #include <array>
+#include <regex>
 
 #include "render/gl/shader_library.h"
 
@@ -9,7 +11,8 @@ namespace rebake {
 namespace {
 
 // The modules of the page; each imports only those before it.
-constexpr std::array<const char*, 5> modules{"linear.js", "scene.js", "renderer.js", "controls.js", "viewer.js"};
+constexpr std::array<const char*, 6> modules{"linear.js",   "scene.js",    "picking.js",
+                                             "renderer.js", "controls.js", "viewer.js"};
 
 void replace_all(std::string& text, std::string_view what, std::string_view by) {
   for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
@@ -56,6 +59,14 @@ std::string data_element(const std::string& name, const std::string& bytes, bool
 }
 
 }  // namespace
+
+bool is_page_file(const std::filesystem::path& path) {
+  static const std::regex data("data/(mesh\\d+\\.gz|feat\\d+\\.[01]\\.(png|webp)|light\\d+\\.(gain|offset)\\.gz)");
+  const std::string name = path.generic_string();
+  return name == "index.html" || name == "scene.json" || name == "viewer/viewer.css" || std::regex_match(name, data) ||
+         std::any_of(modules.begin(), modules.end(),
+                     [&](const char* module) { return name == std::string("viewer/") + module; });
+}
 
 std::string html_escaped(std::string_view text) {
   std::string escaped;

@@ -158,7 +158,6 @@ WebMesh web_mesh(const PreparedSurface& surface, double step, const LightMap* li
   WebMesh mesh;
   mesh.triangles = surface.shown.faces->size();
   mesh.vertices = order.vertices.size();
-  mesh.position_error = step / 2;
   mesh.bytes = gzipped(streams.bytes());
   manifest["vertices"] = mesh.vertices;
   manifest["triangles"] = mesh.triangles;

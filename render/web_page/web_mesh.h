@@ -9,18 +9,13 @@
 
 namespace rebake {
 
-/// Number of triangles that the page draws or leaves out together.
-inline constexpr std::size_t web_cluster_triangles = 256;
-
 /// Steps per texel of texture coordinates.
 inline constexpr double web_texel_steps = 1024;
 
 /// A texture set's triangles in the binary layout of the web page (README.md).
 struct WebMesh {
   std::string bytes;  ///< all streams, one after the other, compressed (gzip)
-  std::string kind;   ///< defines of its shaders: TURNED_MESH, LIT_MESH, GLOSSY_MESH
   std::size_t triangles = 0, vertices = 0;
-  double position_error = 0;  ///< largest error of a position along an axis, in object units
 };
 
 /// Encodes the triangles of a surface that may show opaque texels. `step`: spacing of the grid of positions, in object

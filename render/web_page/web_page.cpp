@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <stdexcept>
 
 #include "mesh_ops/base/error.h"
 #include "render/gl/shader_library.h"
@@ -94,6 +94,7 @@ class Publisher {
 
   WebPage page(const Progress& progress) {
     json draws = json::array();
+    for (const Draw& draw : plan_.draws) add_step(draw);
     for (std::size_t k = 0; k < plan_.draws.size(); ++k) {
       progress.at("publishing", static_cast<double>(k) / static_cast<double>(plan_.draws.size()));
       draws.push_back(draw_of(plan_.draws[k], k));
@@ -103,6 +104,7 @@ class Publisher {
                      {"frames", frames()},
                      {"home", json_of(options_.home)},
                      {"background", json_of(plan_.background)},
+                     {"up", json_of(options_.up)},
                      {"box", {json_of(box_.min()), json_of(box_.max())}},
                      {"targets", {{"frames", frames_}, {"rays", rays_}, {"light", light_}}},
                      {"programs", programs()}};
@@ -124,7 +126,7 @@ class Publisher {
     Kind kind{draw.set.soup.rotations() != nullptr && plan_.uses_view_direction, light_of(draw)};
     kinds_[kind.name()] = kind;
     box_.extend(transformed(draw.set.soup.bounds(), to_world));
-    json result = {{"set", set_of(draw, to_world, number)},
+    json result = {{"set", set_of(draw, number)},
                    {"frame", draw.frame},
                    {"kind", kind.name()},
                    {"toWorld", row_major(to_world.matrix().topRows<3>())},
@@ -141,20 +143,39 @@ class Publisher {
     return result;
   }
 
+  static bool share_a_set(const Draw& a, const Draw& b) {
+    return !a.light && !b.light && a.set.texels == b.set.texels &&
+           a.set.soup.shared_positions() == b.set.soup.shared_positions() &&
+           a.set.soup.shared_uvs() == b.set.soup.shared_uvs() &&
+           a.set.soup.shared_faces() == b.set.soup.shared_faces() && a.set.soup.rotations() == b.set.soup.rotations();
+  }
+
+  // The grid of a set suits the instance that needs the finest one.
+  void add_step(const Draw& draw) {
+    const double step = grid_step(draw.set.soup.bounds(), camera_to_world_ * draw.to_camera, options_);
+    for (auto& [other, finest] : steps_)
+      if (share_a_set(*other, draw)) {
+        finest = std::min(finest, step);
+        return;
+      }
+    steps_.emplace_back(&draw, step);
+  }
+  double step_of(const Draw& draw) const {
+    for (const auto& [other, finest] : steps_)
+      if (other == &draw || share_a_set(*other, draw)) return finest;
+    throw std::logic_error("a draw without a grid");
+  }
+
   // The number of a draw's set; draws that share everything share it.
-  std::size_t set_of(const Draw& draw, const Affine& to_world, std::size_t number) {
-    if (!draw.light)
-      for (std::size_t k = 0; k < known_.size(); ++k)
-        if (known_[k]->set.texels == draw.set.texels && !known_[k]->light &&
-            known_[k]->set.soup.shared_positions() == draw.set.soup.shared_positions() &&
-            known_[k]->set.soup.shared_uvs() == draw.set.soup.shared_uvs() &&
-            known_[k]->set.soup.shared_faces() == draw.set.soup.shared_faces() &&
-            known_[k]->set.soup.rotations() == draw.set.soup.rotations())
-          return k;
+  std::size_t set_of(const Draw& draw, std::size_t number) {
+    for (std::size_t k = 0; k < known_.size(); ++k)
+      if (share_a_set(*known_[k].draw, draw)) {
+        page_.triangles += known_[k].triangles;
+        return k;
+      }
     const PreparedSurface surface = prepared_surface(draw.set, false);
     json set;
-    const WebMesh mesh =
-        web_mesh(surface, grid_step(draw.set.soup.bounds(), to_world, options_), draw.light.get(), set);
+    const WebMesh mesh = web_mesh(surface, step_of(draw), draw.light.get(), set);
     page_.triangles += mesh.triangles;
     set["mesh"] = add_file(fmt::format("mesh{}.gz", number), mesh.bytes);
     WebTexels texels = web_texels(surface);
@@ -163,7 +184,7 @@ class Publisher {
       set["texels"]["images"].push_back(
           add_file(fmt::format("feat{}.{}.{}", number, image, texel_image->extension), std::move(texel_image->bytes)));
     sets_.push_back(set);
-    known_.push_back(&draw);
+    known_.push_back({&draw, mesh.triangles});
     return sets_.size() - 1;
   }
 
@@ -202,8 +223,8 @@ class Publisher {
     }
     programs["resolve"] =
         pair("fullscreen.vert", "resolve.frag",
-             targets + fmt::format("#define SIDE 2\n#define RAY_PER_SAMPLE {}\n#define FRAME_UNIFORMS {}\n",
-                                   frames_ || rays_ ? 1 : 0, plan_.frames.size()),
+             targets + fmt::format("#define SIDE 2\n#define RAY_PER_SAMPLE {}\n#define FRAME_TEXTURE 1\n",
+                                   frames_ || rays_ ? 1 : 0),
              decoders);
     programs["join"] = pair("fullscreen.vert", "join_images.frag", "");
     return programs;
@@ -227,7 +248,12 @@ class Publisher {
   const WebPageOptions& options_;
   WebPage page_;
   json sets_ = json::array();
-  std::vector<const Draw*> known_;  // first draw of each set
+  struct Known {
+    const Draw* draw;  // the first of the set
+    std::size_t triangles;
+  };
+  std::vector<Known> known_;                           // per set
+  std::vector<std::pair<const Draw*, double>> steps_;  // first draw and grid of sets that are shared
   std::map<std::string, Kind> kinds_;
   Box box_;
   bool frames_ = false, rays_ = false, glossy_ = false;

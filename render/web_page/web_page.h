@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@ namespace rebake {
 /// Choices of a web page.
 struct WebPageOptions {
   std::string title;
+  Vec3 up{0, 1, 0};                     ///< axis of the orbit and the turntable, unit
   Camera home;                          ///< camera at the start
   std::map<std::string, Camera> views;  ///< named views, with all planes set
   /// Positions lie on a grid with at least this many steps per pixel of a picture of `home_height` pixels by the home
@@ -26,8 +28,11 @@ struct WebPageOptions {
 struct WebPage {
   std::map<std::string, std::string> files;  ///< relative path → bytes
   std::size_t triangles = 0;
-  std::vector<std::string> decisions;  ///< what the page carries and what not, each with its reason
+  std::vector<std::string> decisions;  ///< the parts of the page, carried or left out, with reasons
 };
+
+/// Whether a published folder has a file of this relative path.
+bool is_page_file(const std::filesystem::path& path);
 
 /// Makes a page that shows the visible nodes of a scene by Rebake's rule, in the colours of `lighting`. It carries only
 /// the shaders and data that the scene calls for. Throws EditError if nothing is visible, DeviceError and FileError if

@@ -117,6 +117,96 @@ class WebPage(unittest.TestCase):
                        {"op": "transform", "node": f"k{k}", "translate": [0.7 * (k - 1.5), -0.5, 0.8], "scale": 0.3}]
         self.expect_page_of(self.scene(FICUS, *copies))
 
+    def test_instances_of_all_sizes(self):
+        # The page's grid of positions suits the nearest instance.
+        scene = self.scene(FICUS, {"op": "duplicate", "node": "ficus", "as": "near"},
+                           {"op": "transform", "node": "ficus", "translate": [0, 0, -4000]},
+                           {"op": "view", "name": "near", "camera": {k: CAMERA[k] for k in ("eye", "target")}})
+        page = self.publish(scene, "--view", "near")
+        self.show(page)
+        self.expect_picture_of(scene)
+        self.assertEqual(self.browser.evaluate("viewer.stats().triangles"), 2 * 2328)
+
+    def test_a_hundred_orientations(self):
+        copies = []
+        for k in range(120):
+            copies.append({"op": "duplicate", "node": "ficus", "as": f"c{k}"})
+            copies.append({"op": "transform", "node": f"c{k}", "scale": 0.1, "translate": [0.3 * (k % 12) - 1.6, 0.25 * (k // 12) - 1, 0.5],
+                           "rotate": {"axis": [0.3, 1, 0.1], "degrees": 3 * k + 1}})
+        self.expect_page_of(self.scene(FICUS, *copies))
+
+    def test_cameras_that_show_nothing_are_refused(self):
+        self.show(self.publish(SAMPLES / "ficus"))
+        before = self.camera()
+        for bad in ({"eye": [0, 0, None]}, {"fov": 0}, {"fov": 200}, {"eye": before["target"]}, {"near": 5, "far": 1}, {"up": [0, 0, 0]}):
+            said = self.browser.evaluate(f"(() => {{ try {{ viewer.setView({json.dumps(bad)}); return ''; }} catch (e) {{ return e.message; }} }})()")
+            self.assertIn("shows nothing", said, bad)
+        self.assertEqual(self.camera(), before)
+        said = self.browser.evaluate("viewer.captureFrame(100000, 4).then(() => '', e => e.message)")
+        self.assertIn("pixels per side", said)
+
+    def covered(self):
+        """Pixels of the canvas that are not white."""
+        return self.browser.evaluate("(() => { const p = viewer.renderer.pixels(viewer.camera, 200, 200); let n = 0;"
+                                     " for (let k = 0; k < p.length; k += 4) if (p[k] + p[k + 1] + p[k + 2] < 760) ++n; return n; })()")
+
+    def test_nothing_is_cut_off_by_moving(self):
+        row = [line for k in range(3) for line in (
+            {**FICUS, "as": f"f{k}"}, {"op": "transform", "node": f"f{k}", "translate": [3 * k - 3, 0, 0]})]
+        camera = {"eye": [0, 1, 12], "target": [0, 0, 0]}
+        scene = self.scene(*row, {"op": "view", "name": "side", "camera": camera},
+                           {"op": "view", "name": "flat", "camera": {**camera, "ortho_height": 9}},
+                           {"op": "view", "name": "top", "camera": {"eye": [0, 12, 0], "target": [0, 0, 0]}})
+        self.show(self.publish(scene, "--view", "side"))
+        self.browser.evaluate("viewer.controls.orbit(200, 0)")  # by 90°
+        self.assertAlmostEqual(self.camera()["eye"][2], 0, 6)
+        end_on = self.covered()
+        self.browser.evaluate("viewer.setView({near: 0.01, far: 1000})")
+        self.assertEqual(self.covered(), end_on, "the planes follow the scene")
+        choose = "(() => { const s = document.getElementById('views'); s.value = '%d'; s.onchange(); return s.value; })()"
+        # Views are sorted by name: flat, side, top.
+        self.assertEqual(self.browser.evaluate(choose % 0), "", "a view can be chosen again")
+        before = self.covered()
+        for _ in range(8):
+            self.browser.evaluate("viewer.controls.zoom(1.1, 200, 200)")
+        self.assertGreater(self.covered(), 0.1 * before, "an orthographic camera zooms out")
+        for _ in range(16):
+            self.browser.evaluate("viewer.controls.zoom(1 / 1.1, 200, 200)")
+        self.assertGreater(self.covered(), before, "and in, without cutting the scene")
+        self.browser.evaluate(choose % 2)
+        self.browser.evaluate("viewer.controls.orbit(0, -60)")
+        self.assertLess(self.camera()["eye"][1], 11.9, "the view from above can be left")
+        for factor in (0.01, 100):
+            for _ in range(20):
+                self.browser.evaluate(f"viewer.controls.zoom({factor}, 200, 200)")
+        self.assertTrue(all(abs(x) < 1e4 for x in self.camera()["eye"]), "zoom has limits")
+
+    def test_damaged_files_are_named(self):
+        page = self.publish(SAMPLES / "ficus")
+        for name, text in (("data/mesh0.gz", "no mesh"), ("data/feat0.0.webp", "no picture"), ("scene.json", "{")):
+            before = (page / name).read_bytes()
+            (page / name).write_text(text)
+            server = Server(page)
+            self.addCleanup(server.close)
+            self.browser.open(server.url)
+            said = self.browser.evaluate("viewer.ready.then(() => '', e => e.message)")
+            self.assertIn(name + " is damaged", said)
+            self.assertEqual(self.browser.evaluate("document.getElementById('message').textContent"), said)
+            (page / name).write_bytes(before)
+
+    def test_a_folder_without_a_server_says_so(self):
+        self.browser.open((self.publish(SAMPLES / "ficus") / "index.html").as_uri())
+        time.sleep(3.3)
+        self.assertEqual(self.browser.evaluate("getComputedStyle(document.getElementById('message')).visibility"), "visible")
+        self.assertIn("web server", self.browser.evaluate("document.getElementById('message').textContent"))
+
+    def test_camera_and_views_on_the_command_line(self):
+        scene = self.scene(FICUS, *({"op": "view", "name": name, "camera": {k: CAMERA[k] for k in ("eye", "target")}} for name in "ab"))
+        page = self.publish(scene, "--views", '["b"]', "--camera", json.dumps({"eye": [0, 0, 9], "target": [0, 0, 0]}))
+        manifest = json.loads((page / "scene.json").read_text())
+        self.assertEqual([view["name"] for view in manifest["views"]], ["b"])
+        self.assertEqual(manifest["home"]["eye"], [0, 0, 9])
+
     def test_mirrored_objects(self):
         self.expect_page_of(self.scene(FICUS, KETTLE, MOVED, {"op": "transform", "node": "kettle", "scale": [-1, 1, 1]}))
 
@@ -182,8 +272,9 @@ class WebPage(unittest.TestCase):
         self.show(self.publish(SAMPLES / "ficus"))
         colors = ("(() => { const gl = viewer.renderer.gl, p = new Uint8Array(4); gl.bindFramebuffer(gl.FRAMEBUFFER, null);"
                   " gl.readPixels(200, 140, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, p); return [...p]; })()")
-        for draw in ("drawMoving(viewer.camera, 400, 400, 1)", "drawMoving(viewer.camera, 400, 400, 0.5)",
-                     "drawAtRest(viewer.camera, 400, 400, null)"):
+        moving = "drawMoving(viewer.camera, 400, 400, {})".format
+        self.browser.evaluate(f"viewer.renderer.{moving(1)}, viewer.renderer.{moving(0.8)}")
+        for draw in (moving(1), moving(0.5), "drawAtRest(viewer.camera, 400, 400, null)"):
             red, green, blue, alpha = self.browser.evaluate(f"viewer.renderer.{draw}, {colors}")
             self.assertEqual(alpha, 255)
             self.assertTrue(red > green > blue > 20, f"the pot is brown: {draw}: {(red, green, blue)}")

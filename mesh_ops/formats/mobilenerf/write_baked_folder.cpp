@@ -150,6 +150,14 @@ bool shows_by_linear_filtering(const BakedObject& object) {
   });
 }
 
+// Why textures for linear filtering cannot be written; empty if they can, or are not wanted.
+std::string why_not_linear(const BakedObject& object, Layout layout, std::optional<int> page_side) {
+  if (object.dialect.linear == 0) return "";
+  if (page_side || (layout == Layout::unsplit && object.sets.size() > 1))
+    return "packed textures do not lie on the grid of the original texels";
+  return shows_by_linear_filtering(object) ? "" : "edited texels cannot be shown by linear filtering";
+}
+
 // The texels of a file in the object's dialect.
 TexelRows file_texels(const TexelRows& texels, const Dialect& dialect) {
   TexelRows rows = in_channel_order(texels, dialect);
@@ -238,13 +246,15 @@ void write_baked_folder(AtomicFolder& out, const fs::path& folder, const BakedOb
   BakedObject object = made;
   if (object.origin && object.origin->format != Origin{}.format) object.origin = nullptr;
   std::erase_if(object.sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
-  if (object.dialect.linear != 0 && (page_side || !shows_by_linear_filtering(object))) {
+  if (const std::string why = why_not_linear(object, layout, page_side); !why.empty()) {
     notes.push_back(
-        fmt::format("edited texels cannot be shown by linear filtering: the textures are written for nearest "
-                    "sampling, {} times as fine; open the folder without linear",
-                    object.dialect.linear));
+        fmt::format("{}: the textures are written for nearest sampling, {} times as fine; open the folder "
+                    "without linear",
+                    why, object.dialect.linear));
     object.dialect.linear = 0;
   }
+  if (object.dialect != Dialect{})
+    notes.emplace_back("the folder is in the dialect in which it was read; open it with the same options");
   const Fitted fit = fitted(object, layout, baked_places, page_side, notes);
   const bool same_layout = object.origin && object.origin->layout == layout;
   const bool same_dialect = object.origin && object.origin->dialect == object.dialect;

@@ -1,18 +1,34 @@
 // @ts-check
 // Moves the camera: mouse, touch and keyboard.
 
-import {add, cameraAxes, cross, dot, halfHeight, rotated, scale, sub, unit} from './linear.js';
+import {add, cameraAxes, cross, dot, halfHeight, rotated, scale, sub, unit, withPlanes} from './linear.js';
 
 /** @typedef {import('./linear.js').Camera} Camera */
+
+const nearestPivot = 1e-5, farthestPivot = 50; // distances from the eye, in diagonals of the scene
+
+/**
+ * Whether a camera shows something: finite numbers, a distance between eye and target, an up direction, a field of view
+ * in 0 … 180 degrees, and planes with 0 < near < far.
+ * @param {Camera} camera
+ */
+function isValid(camera) {
+  const {eye, target, up, fov, near, far} = camera, size = camera.orthoHeight ?? 0;
+  return [...eye, ...target, ...up, fov, near, far, size].every(Number.isFinite) &&
+      Math.hypot(...sub(eye, target)) > 0 && Math.hypot(...up) > 0 && (size > 0 || (fov > 0 && fov < 180 && near > 0)) && far > near;
+}
 
 export class Controls {
   /**
    * @param {HTMLElement} element @param {Camera} camera
+   * @param {{up: number[], box: [number[], number[]]}} scene the axis of the orbit, and the box of all triangles
    * @param {{changed: () => void, depthAt: (x: number, y: number) => number | null}} page
    */
-  constructor(element, camera, page) {
+  constructor(element, camera, scene, page) {
     this.element = element;
     this.camera = camera;
+    this.scene = scene;
+    this.diagonal = Math.hypot(...sub(scene.box[1], scene.box[0])) || 1;
     this.page = page;
     /** @type {Map<number, {x: number, y: number}>} */
     this.pointers = new Map();
@@ -30,7 +46,6 @@ export class Controls {
       this.zoom(Math.exp(Math.max(-1, Math.min(1, step / 500))), e.clientX, e.clientY);
     }, {passive: false});
     element.addEventListener('dblclick', (e) => this.setPivot(e.clientX, e.clientY));
-    element.addEventListener('keydown', (e) => this.keyPressed(e));
   }
 
   /** @param {PointerEvent} e */
@@ -53,7 +68,10 @@ export class Controls {
     this.pointers.set(e.pointerId, now);
   }
 
-  /** @param {KeyboardEvent} e */
+  /**
+   * Whether a key moves the camera, which it then does.
+   * @param {KeyboardEvent} e
+   */
   keyPressed(e) {
     const {left, top, width, height} = this.element.getBoundingClientRect(), x = left + width / 2, y = top + height / 2;
     /** @type {Object<string, () => void>} */
@@ -64,22 +82,32 @@ export class Controls {
       ArrowDown: () => e.shiftKey ? this.pan(0, -20) : this.orbit(0, -20),
       '+': () => this.zoom(0.9, x, y), '=': () => this.zoom(0.9, x, y), '-': () => this.zoom(1 / 0.9, x, y),
     };
-    if (!keys[e.key] || e.ctrlKey || e.metaKey || e.altKey) return;
-    e.preventDefault();
+    if (!keys[e.key]) return false;
     keys[e.key]();
+    return true;
   }
 
   /**
-   * Turns about the pivot.
+   * Orbits about the pivot, with the scene's up direction upwards.
    * @param {number} dx pixels @param {number} dy pixels
    */
   orbit(dx, dy) {
-    const camera = this.camera, up = unit(camera.up), perPixel = Math.PI / this.element.clientHeight;
+    const camera = this.camera, up = unit(this.scene.up), perPixel = Math.PI / this.element.clientHeight;
+    // At a pole, the picture's right direction stands for that of the horizon.
+    const right = rotated(cameraAxes({...camera, up})[0], up, -dx * perPixel);
     let away = rotated(sub(camera.eye, camera.target), up, -dx * perPixel);
-    const right = unit(cross(up, away)), height = Math.asin(Math.max(-1, Math.min(1, dot(unit(away), up))));
-    const limit = Math.PI / 2 - 0.01, rise = Math.max(-limit - height, Math.min(limit - height, dy * perPixel));
-    if (Math.hypot(...cross(up, away)) > 0) away = rotated(away, right, -rise);
-    this.move({...camera, eye: add(camera.target, away)});
+    const height = Math.asin(Math.max(-1, Math.min(1, dot(unit(away), up)))), limit = Math.PI / 2 - 0.01;
+    away = rotated(away, right, -Math.max(-limit - height, Math.min(limit - height, dy * perPixel)));
+    this.show({...camera, up, eye: add(camera.target, away)});
+  }
+
+  /**
+   * Rotates the eye about the scene's up direction.
+   * @param {number} angle radians
+   */
+  rotate(angle) {
+    const camera = this.camera, up = unit(this.scene.up);
+    this.show({...camera, up, eye: add(camera.target, rotated(sub(camera.eye, camera.target), up, angle))});
   }
 
   /**
@@ -90,25 +118,21 @@ export class Controls {
     const camera = this.camera, [right, up] = cameraAxes(camera);
     const distance = Math.hypot(...sub(camera.eye, camera.target)), pixel = 2 * halfHeight(camera, distance) / this.element.clientHeight;
     const motion = add(scale(right, -dx * pixel), scale(up, dy * pixel));
-    this.move({...camera, eye: add(camera.eye, motion), target: add(camera.target, motion)});
+    this.show({...camera, eye: add(camera.eye, motion), target: add(camera.target, motion)});
   }
 
   /**
    * Zooms to a point of the page.
-   * @param {number} factor of the distance @param {number} x @param {number} y
+   * @param {number} wanted factor of the visible size @param {number} x @param {number} y
    */
-  zoom(factor, x, y) {
+  zoom(wanted, x, y) {
     const camera = this.camera, away = sub(camera.eye, camera.target), distance = Math.hypot(...away);
+    const size = camera.orthoHeight || distance;
+    const factor = Math.max(nearestPivot * this.diagonal / size, Math.min(farthestPivot * this.diagonal / size, wanted));
     const at = this.pointAt(x, y, distance), shift = scale(sub(at, camera.target), 1 - factor);
-    const target = add(camera.target, shift), ratio = camera.near / distance, far = camera.far - distance;
-    const next = {...camera, target, eye: add(target, scale(away, factor))};
-    if (camera.orthoHeight) next.orthoHeight = camera.orthoHeight * factor;
-    // The near plane follows the pivot, so that coming near does not cut the surface.
-    if (!camera.orthoHeight) {
-      next.near = Math.min(ratio, 0.1) * distance * factor;
-      next.far = Math.max(far + distance * factor, 2 * next.near);
-    }
-    this.move(next);
+    const target = add(camera.target, shift);
+    if (camera.orthoHeight) this.show({...camera, target, eye: add(target, away), orthoHeight: camera.orthoHeight * factor});
+    else this.show({...camera, target, eye: add(target, scale(away, factor))});
   }
 
   /**
@@ -134,13 +158,23 @@ export class Controls {
     // The eye keeps its depth along the view axis.
     const [, , back] = cameraAxes(this.camera);
     const motion = sub(shift, scale(back, dot(shift, back)));
-    this.move({...this.camera, target, eye: add(this.camera.eye, motion)});
+    this.show({...this.camera, target, eye: add(this.camera.eye, motion)});
   }
 
-  /** @param {Camera} camera */
+  /**
+   * Shows a camera with planes around the scene.
+   * @param {Camera} camera
+   */
+  show(camera) { this.move(withPlanes(camera, this.scene.box)); }
+
+  /**
+   * Shows a camera as it is; false if it shows nothing (isValid()).
+   * @param {Camera} camera
+   */
   move(camera) {
-    if (![...camera.eye, ...camera.target, camera.near, camera.far].every(Number.isFinite)) return;
+    if (!isValid(camera)) return false;
     this.camera = camera;
     this.page.changed();
+    return true;
   }
 }

@@ -87,6 +87,24 @@ export function projection(camera, aspect, reversed) {
 }
 
 /**
+ * The camera with near and far planes around a box.
+ * @param {Camera} camera @param {[number[], number[]]} box @returns {Camera}
+ */
+export function withPlanes(camera, box) {
+  const [, , back] = cameraAxes(camera);
+  let nearest = Infinity, farthest = -Infinity;
+  for (let corner = 0; corner < 8; ++corner) {
+    const p = [0, 1, 2].map((axis) => box[corner >> axis & 1][axis]), depth = -dot(back, sub(p, camera.eye));
+    nearest = Math.min(nearest, depth);
+    farthest = Math.max(farthest, depth);
+  }
+  const room = 0.05 * (farthest - nearest) + 1e-9 * Math.abs(farthest);
+  if (camera.orthoHeight) return {...camera, near: nearest - room, far: farthest + room};
+  const far = Math.max(farthest + room, 1e-6 * (farthest - nearest));
+  return {...camera, near: Math.max(nearest - room, far / 10000), far};
+}
+
+/**
  * Product of a 4×4 and a 3×4 matrix, as 4×4.
  * @param {number[]} p @param {number[]} m
  */

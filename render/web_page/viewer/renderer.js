@@ -33,8 +33,15 @@ export class Renderer {
     for (const {texels} of scene.sets)
       if (texels.width > largest || texels.height > largest)
         throw Error(`This device supports textures up to ${largest}², but the scene has one of ${texels.width}×${texels.height}.`);
+    const targets = 1 + (scene.targets.frames ? 1 : 0) + (scene.targets.rays ? 1 : 0) + scene.targets.light;
+    if (targets > gl.getParameter(gl.MAX_DRAW_BUFFERS))
+      throw Error(`This page needs ${targets} render targets at once, which this device does not offer.`);
+    /** Largest side of a picture with 2×2 samples per pixel. */
+    this.largestPicture = Math.floor(Math.min(largest, gl.getParameter(gl.MAX_RENDERBUFFER_SIZE)) / 2);
     this.gl = gl;
     this.scene = scene;
+    /** @type {WebGLTexture | undefined} */
+    this.frameTable = undefined;
     this.clip = gl.getExtension('EXT_clip_control');
     /** @type {Map<string, Program>} */
     this.programs = new Map();
@@ -51,12 +58,12 @@ export class Renderer {
 
   /**
    * Uploads a texture set.
-   * @param {number} number
+   * @param {number} number @param {(bytes: number) => void} received
    */
-  async load(number) {
+  async load(number, received) {
     const entry = this.scene.sets[number];
     const [mesh, image0, image1] = await Promise.all(
-        [loadMesh(entry), loadImage(entry.texels.images[0]), loadImage(entry.texels.images[1])]);
+        [loadMesh(entry, received), loadImage(entry.texels.images[0], received), loadImage(entry.texels.images[1], received)]);
     for (const image of [image0, image1])
       if (image.width !== entry.texels.width || image.height !== entry.texels.height) throw Error('a feature image has the wrong size');
     this.sets[number] = {mesh, array: this.vertexArray(mesh), texels: this.joined(image0, image1)};
@@ -66,15 +73,15 @@ export class Renderer {
 
   /**
    * Uploads the light map of a draw.
-   * @param {number} number
+   * @param {number} number @param {(bytes: number) => void} received
    */
-  async loadLightOf(number) {
+  async loadLightOf(number, received) {
     const light = this.scene.draws[number].light;
     if (!light) return;
     const gl = this.gl;
     /** @param {import('./scene.js').FileEntry} entry */
     const upload = async (entry) => {
-      const values = await loadLight(entry), texture = this.texture(gl.RGBA16F, light.width, light.height, gl.LINEAR);
+      const values = await loadLight(light, entry, received), texture = this.texture(gl.RGBA16F, light.width, light.height, gl.LINEAR);
       gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, light.width, light.height, gl.RGBA, gl.HALF_FLOAT, values);
       return texture;
     };
@@ -143,9 +150,9 @@ export class Renderer {
     buffer(mesh.rectangles);
     attribute(6, mesh.rectangles, 4, 8, 0, true);
     attribute(7, mesh.rectangles, 2, 8, 0, true);  // the texels are packed already: a rectangle is at its own corner
-    if (mesh.turns) {
-      buffer(mesh.turns);
-      for (const column of [0, 1, 2]) attribute(2 + column, mesh.turns, 3, 36, 12 * column, false);
+    if (mesh.rotations) {
+      buffer(mesh.rotations);
+      for (const column of [0, 1, 2]) attribute(2 + column, mesh.rotations, 3, 36, 12 * column, false);
     }
     if (mesh.lightPlaces) {
       buffer(mesh.lightPlaces);
@@ -202,6 +209,8 @@ export class Renderer {
     const gl = this.gl, known = this.targets.get(name);
     if (known && known.width === width && known.height === height) return known;
     if (known) {
+      // A bound framebuffer that loses its textures would leave Chromium's canvas without a buffer to draw to.
+      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
       for (const texture of Object.values(known.textures)) gl.deleteTexture(texture);
       gl.deleteFramebuffer(known.framebuffer);
     }
@@ -253,7 +262,7 @@ export class Renderer {
       gl.useProgram(program.program);
       gl.uniformMatrix4fv(program.at('object_to_clip'), false, columns(matrix, 4));
       this.bind(program, 'features', 0, set.texels);
-      if (set.mesh.turns) this.setTurns(camera, program, draw, toCamera);
+      if (set.mesh.rotations) this.setRotations(camera, program, draw, toCamera);
       if (draw.light && light) {
         gl.uniform2f(program.at('light_size'), draw.light.width, draw.light.height);
         this.bind(program, 'light_gain', 2, light.gain);
@@ -269,7 +278,7 @@ export class Renderer {
   }
 
   /** @param {Camera} camera @param {Program} program @param {import('./scene.js').DrawEntry} draw @param {number[]} toCamera */
-  setTurns(camera, program, draw, toCamera) {
+  setRotations(camera, program, draw, toCamera) {
     const gl = this.gl;
     gl.uniform1i(program.at('parallel_rays'), camera.orthoHeight ? 1 : 0);
     gl.uniformMatrix4fv(program.at('object_to_camera'), false, columns([...toCamera, 0, 0, 0, 1], 4));
@@ -314,7 +323,9 @@ export class Renderer {
    */
   drawAtRest(camera, width, height, framebuffer) {
     const gl = this.gl, {targets} = this.scene;
+    if (Math.max(width, height) > this.largestPicture) throw Error(`This device draws pictures of up to ${this.largestPicture} pixels per side.`);
     this.begin(width, height);
+    if (targets.frames) this.frameTable ??= this.texture(gl.RGBA32F, 4, this.scene.frames.length, gl.NEAREST);
     /** @type {[string, number][]} */
     const formats = [['features', gl.RG32UI]];
     if (targets.frames) formats.push(['frames', gl.R16UI]);
@@ -344,7 +355,8 @@ export class Renderer {
         table.push(decoder, alpha[0], alpha[1], 0);
         decoders = Math.max(decoders, decoder + 1);
       }
-      gl.uniform4fv(program.at('frame_table'), table);
+      this.bind(program, 'frame_table', 5, /** @type {WebGLTexture} */ (this.frameTable));
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, 4, this.scene.frames.length, gl.RGBA, gl.FLOAT, new Float32Array(table));
       gl.uniform1f(program.at('decoder_count'), decoders);
     } else {
       this.setDecoder(camera, program, 0);
@@ -376,6 +388,7 @@ export class Renderer {
     gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target.framebuffer);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
     gl.blitFramebuffer(0, 0, w, h, 0, 0, width, height, gl.COLOR_BUFFER_BIT, gl.LINEAR);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
   /** @param {number} width @param {number} height */
@@ -412,39 +425,5 @@ export class Renderer {
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
     for (let y = 0; y < height; ++y) flipped.set(bytes.subarray(4 * width * y, 4 * width * (y + 1)), 4 * width * (height - 1 - y));
     return flipped;
-  }
-
-  /**
-   * Depth of the nearest triangle along the ray through a point of the canvas, 0 … 1 from the top left; holes count as
-   * surface. Null where there is no triangle.
-   * @param {Camera} camera @param {number} x @param {number} y @param {number} aspect @returns {number | null}
-   */
-  rayDepth(camera, x, y, aspect) {
-    let nearest = Infinity;
-    const top = halfHeight(camera, 1), px = (2 * x - 1) * top * aspect, py = (1 - 2 * y) * top;
-    for (const draw of this.scene.draws) {
-      const set = this.sets[draw.set];
-      if (!set) continue;
-      const m = objectToCamera(camera, draw.toWorld, this.scene.sets[draw.set].origin), {corners, positions} = set.mesh;
-      /** @param {number} v @returns {number[]} offset from the ray in the picture plane, and depth */
-      const place = (v) => {
-        const p = [positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]];
-        const [cx, cy, cz] = [0, 1, 2].map((i) => dot(m.slice(4 * i, 4 * i + 3), p) + m[4 * i + 3]);
-        return camera.orthoHeight ? [cx - px, cy - py, -cz] : [cx / -cz - px, cy / -cz - py, -cz];
-      };
-      const placed = new Map();
-      const at = (/** @type {number} */ v) => { if (!placed.has(v)) placed.set(v, place(v)); return placed.get(v); };
-      for (let k = 0; k < corners.length; k += 3) {
-        const [a, b, c] = [at(corners[k]), at(corners[k + 1]), at(corners[k + 2])];
-        if (a[2] <= 0 || b[2] <= 0 || c[2] <= 0) continue;
-        const wa = b[0] * c[1] - b[1] * c[0], wb = c[0] * a[1] - c[1] * a[0], wc = a[0] * b[1] - a[1] * b[0];
-        if (!(wa >= 0 && wb >= 0 && wc >= 0) && !(wa <= 0 && wb <= 0 && wc <= 0)) continue;
-        const sum = wa + wb + wc;
-        if (sum === 0) continue;
-        const depth = camera.orthoHeight ? (wa * a[2] + wb * b[2] + wc * c[2]) / sum : sum / (wa / a[2] + wb / b[2] + wc / c[2]);
-        if (depth > camera.near && depth < nearest) nearest = depth;
-      }
-    }
-    return nearest === Infinity ? null : nearest;
   }
 }

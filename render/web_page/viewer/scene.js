@@ -9,59 +9,102 @@
  * @typedef {{set: number, frame: number, kind: string, toWorld: number[], objectToFed: number[], light?: LightEntry}} DrawEntry
  * @typedef {{decoder: number, worldToDecoder: number[], alpha: [number, number]}} FrameEntry
  * @typedef {{draws: DrawEntry[], sets: SetEntry[], frames: FrameEntry[], home: import('./linear.js').Camera,
- *   background: [number, number, number], box: [number[], number[]], targets: {frames: boolean, rays: boolean, light: number},
+ *   background: [number, number, number], up: [number, number, number], box: [number[], number[]], targets: {frames: boolean, rays: boolean, light: number},
  *   programs: Object<string, {vertex: string, fragment: string}>, decisions: string[], triangles: number,
  *   views: {name: string, camera: import('./linear.js').Camera}[]}} Manifest
  * @typedef {{first: number, count: number, low: number[], high: number[]}} Cluster
  * @typedef {{corners: Uint32Array, positions: Float32Array, texels: Float32Array, rectangles: Uint16Array,
- *   turns?: Float32Array, lightPlaces?: Float32Array, clusters: Cluster[]}} Mesh
+ *   rotations?: Float32Array, lightPlaces?: Float32Array, clusters: Cluster[]}} Mesh
  */
 
 const clusterTriangles = 256;
 
 /**
- * The bytes of a file of the page.
- * @param {string} name @returns {Promise<Uint8Array>}
+ * The bytes of a file of the page. `received` is called with the number of further bytes.
+ * @param {string} name @param {(bytes: number) => void} [received] @returns {Promise<Uint8Array>}
  */
-async function fileBytes(name) {
+async function fileBytes(name, received) {
   const element = document.getElementById(name);
   if (element) {
     const text = atob(element.textContent ?? '');
+    received?.(text.length);
     return Uint8Array.from(text, (c) => c.charCodeAt(0));
   }
-  const answer = await fetch(name);
-  if (!answer.ok) throw Error(`${name} cannot be loaded (${answer.status})`);
-  return new Uint8Array(await answer.arrayBuffer());
+  let answer;
+  try {
+    answer = await fetch(name);
+  } catch {
+    throw Error(`${name} cannot be loaded. Is the network or the server down?`);
+  }
+  if (!answer.ok || !answer.body) throw Error(`${name} cannot be loaded (${answer.status})`);
+  const reader = answer.body.getReader(), pieces = [];
+  let size = 0;
+  for (;;) {
+    const {done, value} = await reader.read();
+    if (done) break;
+    pieces.push(value);
+    size += value.length;
+    received?.(value.length);
+  }
+  const bytes = new Uint8Array(size);
+  let at = 0;
+  for (const piece of pieces) {
+    bytes.set(piece, at);
+    at += piece.length;
+  }
+  return bytes;
 }
 
 /** @returns {Promise<Manifest>} */
 export async function loadManifest() {
   const element = document.getElementById('scene.json');
-  if (element) return JSON.parse(element.textContent ?? '');
-  return JSON.parse(new TextDecoder().decode(await fileBytes('scene.json')));
-}
-
-/** @param {Uint8Array} bytes @returns {Promise<Uint8Array>} */
-async function unpacked(bytes) {
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  const text = element ? element.textContent ?? '' : new TextDecoder().decode(await fileBytes('scene.json'));
+  try {
+    return JSON.parse(text);
+  } catch {
+    throw Error('scene.json is damaged: publish the scene again, or copy its folder again');
+  }
 }
 
 /**
- * A feature image with its bytes as in the file.
- * @param {FileEntry} entry
+ * The contents of a gzip file. Some servers unpack it on the way.
+ * @param {FileEntry} entry @param {(bytes: number) => void} received @returns {Promise<Uint8Array>}
  */
-export async function loadImage(entry) {
-  const blob = new Blob([await fileBytes(entry.name)], {type: entry.name.endsWith('.webp') ? 'image/webp' : 'image/png'});
-  return createImageBitmap(blob, {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+async function unpacked(entry, received) {
+  const bytes = await fileBytes(entry.name, received);
+  if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes;
+  try {
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  } catch {
+    throw damaged(entry);
+  }
+}
+
+/** @param {FileEntry} entry */
+const damaged = (entry) => Error(`${entry.name} is damaged: publish the scene again, or copy its folder again`);
+
+/**
+ * A feature image with its bytes as in the file.
+ * @param {FileEntry} entry @param {(bytes: number) => void} received
+ */
+export async function loadImage(entry, received) {
+  const blob = new Blob([await fileBytes(entry.name, received)], {type: entry.name.endsWith('.webp') ? 'image/webp' : 'image/png'});
+  try {
+    return await createImageBitmap(blob, {premultiplyAlpha: 'none', colorSpaceConversion: 'none'});
+  } catch {
+    throw damaged(entry);
+  }
 }
 
 /**
  * Half floats of a light map.
- * @param {FileEntry} entry
+ * @param {LightEntry} light @param {FileEntry} entry @param {(bytes: number) => void} received
  */
-export async function loadLight(entry) {
-  return new Uint16Array((await unpacked(await fileBytes(entry.name))).buffer);
+export async function loadLight(light, entry, received) {
+  const bytes = await unpacked(entry, received);
+  if (bytes.length !== 8 * light.width * light.height) throw damaged(entry);
+  return new Uint16Array(bytes.buffer);
 }
 
 /**
@@ -72,6 +115,7 @@ function streamsOf(bytes, set) {
   /** @type {Object<string, Int32Array>} */
   const streams = {};
   let at = 0;
+  if (bytes.length !== 4 * set.streams.reduce((sum, {count}) => sum + count, 0)) throw damaged(set.mesh);
   for (const {name, count} of set.streams) {
     const values = new Int32Array(count);
     let value = 0;
@@ -90,16 +134,16 @@ function streamsOf(bytes, set) {
  * Rotation matrices, column-major, of quaternions.
  * @param {Object<string, Int32Array>} s @param {number} count
  */
-function turnsOf(s, count) {
-  const turns = new Float32Array(9 * count);
+function rotationsOf(s, count) {
+  const rotations = new Float32Array(9 * count);
   for (let k = 0; k < count; ++k) {
     const size = Math.hypot(s.qx[k], s.qy[k], s.qz[k], s.qw[k]), sign = s.mirrored[k] ? -1 : 1;
     const x = s.qx[k] / size, y = s.qy[k] / size, z = s.qz[k] / size, w = s.qw[k] / size;
-    turns.set([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),
+    rotations.set([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),
       2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
       2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)].map((m) => sign * m), 9 * k);
   }
-  return turns;
+  return rotations;
 }
 
 /** @param {Uint32Array} corners @param {Float32Array} positions @returns {Cluster[]} */
@@ -119,9 +163,9 @@ function clustersOf(corners, positions) {
   return clusters;
 }
 
-/** @param {SetEntry} set @returns {Promise<Mesh>} */
-export async function loadMesh(set) {
-  const s = streamsOf(await unpacked(await fileBytes(set.mesh.name)), set), n = set.vertices;
+/** @param {SetEntry} set @param {(bytes: number) => void} received @returns {Promise<Mesh>} */
+export async function loadMesh(set, received) {
+  const s = streamsOf(await unpacked(set.mesh, received), set), n = set.vertices;
   const positions = new Float32Array(3 * n), texels = new Float32Array(2 * n), rectangles = new Uint16Array(4 * n);
   const {x, y, z, u, v, left, top, width, height} = s, {step, texelSteps} = set;
   for (let k = 0; k < n; ++k) {
@@ -138,7 +182,7 @@ export async function loadMesh(set) {
   const corners = new Uint32Array(s.corners.buffer);
   /** @type {Mesh} */
   const mesh = {corners, positions, texels, rectangles, clusters: clustersOf(corners, positions)};
-  if (s.qx) mesh.turns = turnsOf(s, n);
+  if (s.qx) mesh.rotations = rotationsOf(s, n);
   if (s.light_x) {
     mesh.lightPlaces = new Float32Array(2 * n);
     for (let k = 0; k < n; ++k) mesh.lightPlaces.set([s.light_x[k] / 256, s.light_y[k] / 256], 2 * k);

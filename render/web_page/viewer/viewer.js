@@ -1,16 +1,16 @@
 // @ts-check
 // The page: loads the scene, draws frames when something changes, and offers window.viewer.
 
-import {rotated, sub, add, unit} from './linear.js';
 import {loadManifest, totalBytes} from './scene.js';
+import {depthAlongRay} from './picking.js';
 import {Renderer} from './renderer.js';
 import {Controls} from './controls.js';
 
 /** @typedef {import('./linear.js').Camera} Camera */
 
-const restAfter = 150;    // milliseconds without a change until the picture is drawn with all samples
-const wantedFrame = 40;   // milliseconds of a frame while moving
-const turnPeriod = 20000; // milliseconds of a turn of the turntable
+const restAfter = 150;        // milliseconds without a change until the picture is drawn with all samples
+const wantedFrame = 40;       // milliseconds of a frame while moving
+const rotationPeriod = 20000; // milliseconds of a full rotation of the turntable
 
 /** @param {string} id */
 const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
@@ -27,17 +27,21 @@ function showError(error) {
 class Viewer extends EventTarget {
   constructor() {
     super();
+    element('message').hidden = true;
+    element('message').classList.remove('late');
     /** Resolves when everything is drawn; rejects if the page cannot show the scene. */
     this.ready = this.start();
     this.ready.catch(showError);
   }
 
   async start() {
+    element('progress').hidden = false;
     this.scene = await loadManifest();
     this.renderer = new Renderer(canvas, this.scene);
-    this.controls = new Controls(canvas, this.scene.home, {
+    this.controls = new Controls(canvas, this.scene.home, this.scene, {
       changed: () => this.changed(),
-      depthAt: (x, y) => this.renderer?.rayDepth(this.camera, x, y, canvas.width / canvas.height) ?? null,
+      depthAt: (x, y) => this.scene && this.renderer ?
+          depthAlongRay(this.scene, this.renderer.sets, this.camera, x, y, canvas.width / canvas.height) : null,
     });
     this.share = 1;
     this.frames = 0;
@@ -46,11 +50,12 @@ class Viewer extends EventTarget {
     this.moved = -Infinity;
     this.atRest = false;
     this.pending = false;
-    this.turning = false;
+    this.rotating = false;
     canvas.addEventListener('webglcontextlost', (e) => { e.preventDefault(); this.lost = true; });
     canvas.addEventListener('webglcontextrestored', () => { this.lost = false; void this.restore(); });
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
+    this.showStored(this.scene.home);
     this.setUpTools();
     await this.loadAll();
     element('progress').hidden = true;
@@ -64,23 +69,22 @@ class Viewer extends EventTarget {
     if (!scene || !renderer) return;
     const all = totalBytes(scene);
     let loaded = 0;
-    const show = () => {
-      const percent = all ? Math.round(100 * loaded / all) : 100;
+    /** @param {number} bytes */
+    const received = (bytes) => {
+      loaded += bytes;
+      const percent = all ? Math.min(100, Math.round(100 * loaded / all)) : 100;
       element('progress').setAttribute('aria-valuenow', String(percent));
       element('bar').style.width = percent + '%';
       element('loaded').textContent = `${(loaded / 1e6).toFixed(1)} of ${(all / 1e6).toFixed(1)} MB`;
-      this.changed();
     };
-    show();
+    received(0);
     await Promise.all(scene.sets.map(async (set, k) => {
-      await renderer.load(k);
-      loaded += set.mesh.bytes + set.texels.images[0].bytes + set.texels.images[1].bytes;
-      show();
+      await renderer.load(k, received);
+      this.changed();
     }));
     await Promise.all(scene.draws.map(async ({light}, k) => {
-      await renderer.loadLightOf(k);
-      if (light) loaded += light.gain.bytes + (light.offset ? light.offset.bytes : 0);
-      if (light) show();
+      await renderer.loadLightOf(k, received);
+      if (light) this.changed();
     }));
   }
 
@@ -101,10 +105,24 @@ class Viewer extends EventTarget {
   get camera() { return /** @type {Controls} */ (this.controls).camera; }
 
   /**
-   * Shows a camera: lengths in scene units, fov vertical in degrees.
+   * Shows a camera: lengths in scene units, fov vertical in degrees; orthoHeight above 0 for parallel rays. Throws
+   * RangeError if it shows nothing.
    * @param {Partial<Camera>} camera
    */
-  setView(camera) { this.controls?.move({...this.camera, ...camera}); }
+  setView(camera) {
+    if (!this.controls?.move({...this.camera, ...camera}))
+      throw RangeError('this camera shows nothing: ' + JSON.stringify(camera));
+  }
+
+  /**
+   * Shows a stored camera. In a window that is higher than wide, it shows as much from left to right as in a square one.
+   * @param {Camera} camera
+   */
+  showStored(camera) {
+    const narrow = Math.min(1, canvas.width / canvas.height);
+    if (camera.orthoHeight) this.controls?.move({...camera, orthoHeight: camera.orthoHeight / narrow});
+    else this.controls?.move({...camera, fov: 360 / Math.PI * Math.atan(Math.tan(camera.fov * Math.PI / 360) / narrow)});
+  }
 
   /**
    * A PNG data URL of the present view at 4 samples per pixel.
@@ -113,10 +131,11 @@ class Viewer extends EventTarget {
   async captureFrame(width, height) {
     await this.ready;
     const picture = document.createElement('canvas');
+    const pixels = /** @type {Renderer} */ (this.renderer).pixels(this.camera, width, height);
     picture.width = width;
     picture.height = height;
     const context = /** @type {CanvasRenderingContext2D} */ (picture.getContext('2d'));
-    context.putImageData(new ImageData(/** @type {Renderer} */ (this.renderer).pixels(this.camera, width, height), width, height), 0, 0);
+    context.putImageData(new ImageData(pixels, width, height), 0, 0);
     this.changed();
     return picture.toDataURL('image/png');
   }
@@ -144,13 +163,14 @@ class Viewer extends EventTarget {
   frame(now) {
     const {renderer} = this;
     if (!renderer || this.lost || canvas.width === 0 || canvas.height === 0) return;
-    if (this.turning) this.turnTo(now);
-    const begin = performance.now(), moving = this.turning || begin - (this.moved ?? 0) < restAfter;
+    if (this.rotating) this.rotateTo(now);
+    const begin = performance.now(), moving = this.rotating || begin - (this.moved ?? 0) < restAfter;
     try {
       if (moving) renderer.drawMoving(this.camera, canvas.width, canvas.height, this.share ?? 1);
       else renderer.drawAtRest(this.camera, canvas.width, canvas.height, null);
     } catch (error) {
       showError(error);
+      this.dispatchEvent(new CustomEvent('failed', {detail: error}));
       return;
     }
     // Waits for the GPU, so that the time is that of the frame.
@@ -169,61 +189,68 @@ class Viewer extends EventTarget {
     this.showStats();
   }
 
-  /** Resolves when the present view is drawn with all samples. */
+  /** Resolves when the present view is drawn with all samples; rejects if it cannot be drawn. */
   drawnAtRest() {
-    return new Promise((resolve) => {
+    return new Promise((resolve, reject) => {
       this.addEventListener('rest', resolve, {once: true});
+      this.addEventListener('failed', (e) => reject(/** @type {CustomEvent} */ (e).detail), {once: true});
       this.moved = -Infinity;
       this.request();
     });
   }
 
   resize() {
-    const ratio = Math.min(window.devicePixelRatio || 1, 2);
-    const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    const largest = (this.renderer?.largestPicture ?? Infinity) / Math.max(canvas.clientWidth, canvas.clientHeight, 1);
+    const ratio = Math.min(window.devicePixelRatio || 1, 2, largest);
+    const width = Math.max(1, Math.floor(canvas.clientWidth * ratio)), height = Math.max(1, Math.floor(canvas.clientHeight * ratio));
     if (canvas.width === width && canvas.height === height) return;
     canvas.width = width;
     canvas.height = height;
     this.changed();
+    // A new size clears the canvas; without a frame now, the browser would show it empty.
+    this.frame(performance.now());
   }
 
   /** @param {number} now */
-  turnTo(now) {
-    const camera = this.camera, angle = 2 * Math.PI * (now - (this.turnedAt ?? now)) / turnPeriod;
-    this.turnedAt = now;
-    this.controls?.move({...camera, eye: add(camera.target, rotated(sub(camera.eye, camera.target), unit(camera.up), angle))});
+  rotateTo(now) {
+    this.controls?.rotate(2 * Math.PI * (now - (this.rotatedAt ?? now)) / rotationPeriod);
+    this.rotatedAt = now;
   }
 
   /** @param {boolean} on */
-  setTurning(on) {
-    this.turning = on;
-    this.turnedAt = undefined;
-    element('turn').setAttribute('aria-pressed', String(on));
+  setRotating(on) {
+    this.rotating = on;
+    this.rotatedAt = undefined;
+    element('rotate').setAttribute('aria-pressed', String(on));
     this.changed();
+  }
+
+  /** @param {boolean} open */
+  openPanel(open) {
+    element('panel').hidden = !open;
+    element('about').setAttribute('aria-expanded', String(open));
+    this.showStats();
   }
 
   setUpTools() {
     const {scene} = this;
     if (!scene) return;
-    const home = () => { this.setTurning(false); this.controls?.move(scene.home); };
-    const turn = () => this.setTurning(!this.turning);
+    const home = () => { this.setRotating(false); this.showStored(scene.home); };
+    const rotate = () => this.setRotating(!this.rotating);
     const full = () => void (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen());
-    const about = () => {
-      const panel = element('panel');
-      panel.hidden = !panel.hidden;
-      element('about').setAttribute('aria-expanded', String(!panel.hidden));
-      this.showStats();
-    };
+    const about = () => this.openPanel(element('panel').hidden);
     element('home').onclick = home;
-    element('turn').onclick = turn;
+    element('rotate').onclick = rotate;
     element('full').onclick = full;
     element('about').onclick = about;
-    element('turn').hidden = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    element('close').onclick = () => { this.openPanel(false); element('about').focus(); };
+    element('rotate').hidden = matchMedia('(prefers-reduced-motion: reduce)').matches;
     element('full').hidden = !document.fullscreenEnabled;
-    canvas.addEventListener('keydown', (e) => {
-      if (e.ctrlKey || e.metaKey || e.altKey) return;
-      const action = {h: home, t: turn, f: full, i: about}[e.key.toLowerCase()];
+    window.addEventListener('keydown', (e) => {
+      if (e.ctrlKey || e.metaKey || e.altKey || e.target instanceof HTMLSelectElement) return;
+      const action = {h: home, r: rotate, f: full, i: about, escape: () => this.openPanel(false)}[e.key.toLowerCase()];
       if (action) action();
+      else if (this.controls?.keyPressed(e)) e.preventDefault();
     });
     for (const text of scene.decisions) {
       const item = document.createElement('li');
@@ -232,14 +259,21 @@ class Viewer extends EventTarget {
     }
     const views = /** @type {HTMLSelectElement} */ (element('views'));
     views.hidden = scene.views.length === 0;
-    views.append(new Option('First view', ''));
+    views.append(new Option('Views', ''));
     scene.views.forEach(({name}, k) => views.append(new Option(name, String(k))));
-    views.onchange = () => { this.setTurning(false); this.controls?.move(views.value === '' ? scene.home : scene.views[Number(views.value)].camera); };
+    views.onchange = () => {
+      const view = scene.views[Number(views.value)];
+      if (views.value === '' || !view) return;
+      // The menu names no view, so that each can be chosen again.
+      views.value = '';
+      this.setRotating(false);
+      this.showStored(view.camera);
+    };
   }
 
   showStats() {
     const s = this.stats();
-    element('stats').textContent = `${s.triangles} triangles, ${(s.bytes / 1e6).toFixed(1)} MB, ${this.frameTime?.toFixed(1)} ms for the last frame of ${canvas.width} × ${canvas.height} pixels`;
+    element('stats').textContent = `${s.triangles} triangles, ${(s.bytes / 1e6).toFixed(2)} MB, ${this.frameTime?.toFixed(1)} ms for the last frame of ${canvas.width} × ${canvas.height} pixels`;
   }
 }
 

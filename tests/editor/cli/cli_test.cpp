@@ -216,6 +216,13 @@ TEST_F(Cli, PublishedPagesReplaceOnlyPages) {
   const auto before = folder_bytes(in("page"));
   EXPECT_EQ(rebake_run(publish + in("page")).code, 1);
   EXPECT_EQ(folder_bytes(in("page")), before);
+  std::filesystem::remove(in("page/notes.txt"));
+  for (const char* file : {"data/mine.txt", "viewer/mine.js", "data/feat0.0.gif"}) {
+    write_text(in("page/" + std::string(file)), "mine");
+    EXPECT_EQ(rebake_run(publish + in("page")).code, 1) << file;
+    EXPECT_TRUE(std::filesystem::exists(in("page/" + std::string(file)))) << file;
+    std::filesystem::remove(in("page/" + std::string(file)));
+  }
   const auto scene = folder_bytes(in("ball"));
   export_scene(scene_of(made_object({.seed = 5})), folder_.path() / "other", {});
   EXPECT_EQ(rebake_run(publish + in("other")).code, 1) << "another scene";

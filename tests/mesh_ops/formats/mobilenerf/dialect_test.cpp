@@ -199,6 +199,32 @@ TEST_F(DialectFolder, FoldersForLinearFilteringBecomeNearestWhenNeeded) {
   EXPECT_TRUE(texels_at_centers(*back) == texels_at_centers(*scene.roots[0]->object));
 }
 
+// One texture for several sets is packed, off the grid of the original texels.
+TEST_F(DialectFolder, UnsplitFoldersOfSeveralSetsAreForNearestSampling) {
+  const Scene scene = read_any(written({.linear = 3}), {Axes::y_up, {.linear = 3}});
+  const Scene two = with_changed(scene, scene.roots[0]->id, [&](Node& node) {
+    auto object = std::make_shared<BakedObject>(*node.object);
+    object->sets.push_back(object->sets[0]);
+    object->sets[1].texels = std::make_shared<const FeatureTexture>(*object->sets[0].texels);
+    node.object = object;
+  });
+  const ExportReport report = export_scene(two, path("unsplit"), {.layout = Layout::unsplit, .sources = {}});
+  EXPECT_TRUE(std::any_of(report.notes.begin(), report.notes.end(), [](const std::string& note) {
+    return note.find("open the folder without linear") != std::string::npos;
+  }));
+  auto expected = texels_at_centers(*two.roots[0]->object);
+  EXPECT_EQ(read_baked_folder(path("unsplit"), Axes::y_up)->triangle_count(), two.roots[0]->object->triangle_count());
+  std::size_t same = 0;
+  for (const auto& [texel, count] : texels_at_centers(*read_baked_folder(path("unsplit"), Axes::y_up))) {
+    // Alpha is plain in unsplit folders.
+    same += std::any_of(expected.begin(), expected.end(), [&, texel = texel](const auto& one) {
+      return std::equal(texel.begin(), texel.begin() + 3, one.first.begin()) &&
+             std::equal(texel.begin() + 4, texel.begin() + 7, one.first.begin() + 4);
+    });
+  }
+  EXPECT_EQ(same, texels_at_centers(*read_baked_folder(path("unsplit"), Axes::y_up)).size());
+}
+
 TEST_F(DialectFolder, LinearTakesOddFactors) {
   Document document;
   for (const int factor : {0, 2, 4, 11})
