@@ -9,6 +9,7 @@
 
 #include "editor/actions/export_action.h"
 #include "editor/actions/lit.h"
+#include "editor/actions/publish_action.h"
 #include "editor/actions/save.h"
 #include "editor/actions/views.h"
 #include "editor/document/replaced_work.h"
@@ -82,6 +83,21 @@ py::object edit_with(PyDocument& document, const std::string& op, const py::dict
   return edit.type().selects ? py::object(selections_of(document)) : py::none();
 }
 
+// Runs an action and returns its messages.
+template <class ActionStruct>
+std::vector<std::string> notes_of(Session& session, const ActionStruct& action) {
+  std::vector<std::string> notes;
+  const auto say = std::exchange(session.say, [&notes](const std::string& text) { notes.push_back(text); });
+  try {
+    run(session, action);
+  } catch (...) {
+    session.say = say;
+    throw;
+  }
+  session.say = say;
+  return notes;
+}
+
 std::vector<std::string> export_with(PyDocument& document, const py::dict& fields) {
   const json line = to_json(fields);
   std::vector<std::string> notes;
@@ -91,15 +107,16 @@ std::vector<std::string> export_with(PyDocument& document, const py::dict& field
       notes = write_export(session, action).notes;
       return;
     }
-    const auto say = std::exchange(session.say, [&notes](const std::string& text) { notes.push_back(text); });
-    try {
-      run(session, action);
-    } catch (...) {
-      session.say = say;
-      throw;
-    }
-    session.say = say;
+    notes = notes_of(session, action);
   });
+  return notes;
+}
+
+std::vector<std::string> publish_with(PyDocument& document, const py::dict& fields) {
+  const json line = to_json(fields);
+  std::vector<std::string> notes;
+  document.work(
+      [&](Session& session) { notes = notes_of(session, read_action<PublishAction>(line, session.scene())); });
   return notes;
 }
 
@@ -145,6 +162,7 @@ void add_history_methods(py::class_<PyDocument>& type) {
 void add_edit_methods(py::class_<PyDocument>& type) {
   type.def("_edit", &edit_with);
   type.def("_export", &export_with);
+  type.def("_publish", &publish_with);
   py::dict scope;
   scope["__builtins__"] = py::module_::import("builtins");
   scope["__name__"] = "rebake";

@@ -123,6 +123,16 @@ class Document:
         picture_size: plain: side of the pictures for measuring, in pixels, 16 to 4096
         nodes: only these nodes and their children; default: all
         """
+    def publish(self, path: str | PathLike[str], title: str = "", view: str = "", camera: Camera | None = None, views: Sequence[str] | None = None, single_file: bool = False) -> list[str]:
+        """Publishes the scene as a web page; returns notes: its size, and the parts that it carries or leaves out.
+
+        path: folder to write, or the file NAME.html with single_file
+        title: title of the page; default: the name of the output
+        view: name of the stored view at the start; default: one that frames the scene
+        camera: the camera at the start
+        views: names of stored views that the page offers; default: all
+        single_file: one file that works without a server and makes no request
+        """
     def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", half_direction: bool | None = None, direction_first: bool | None = None, bgr: bool | None = None, alpha: Literal["halved", "plain"] | None = None, no_holes: bool | None = None, linear: int | None = None, ground: bool = False, content: str = "") -> None:
         """Reads a scene or a textured mesh into the scene.
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/actions/export_action.h"
+#include "editor/actions/publish_action.h"
 #include "editor/edits/edit.h"
 #include "editor/fields/field_info.h"
 
@@ -160,7 +161,7 @@ struct Method {
 };
 
 std::string parameter_name(const Method& method, const std::string& field) {
-  return method.name == "export" && field == "out" ? "path" : python_name(field);
+  return (method.name == "export" || method.name == "publish") && field == "out" ? "path" : python_name(field);
 }
 
 // Source of a typed method, indented as in a class. `last`: a further parameter, such as **unknown.
@@ -199,10 +200,20 @@ Method export_method() {
   return method;
 }
 
+Method publish_method() {
+  Method method{
+      "publish",
+      "Publishes the scene as a web page; returns notes: its size, and the parts that it carries or leaves out.",
+      "list[str]", action_type<PublishAction>().fields(), true};
+  for (FieldInfo& field : method.fields)
+    if (field.name == "out") field.type.python = "str | PathLike[str]";
+  return method;
+}
+
 }  // namespace
 
 std::string python_stub() {
-  std::string out = head + python_source(export_method());
+  std::string out = head + python_source(export_method()) + python_source(publish_method());
   for (const EditType* type : edit_types()) out += python_source(method_of(*type));
   return out;
 }
@@ -215,12 +226,13 @@ std::string python_methods() {
     out += python_source(method, "**unknown") +
            fmt::format("        return self._edit(\"{}\", {{{}**unknown}})\n", type->op, arguments_of(method));
   }
-  const Method method = export_method();
-  return out + python_source(method) + fmt::format("        return self._export({{{}}})\n", arguments_of(method));
+  for (const auto& [method, call] : {std::pair(export_method(), "_export"), {publish_method(), "_publish"}})
+    out += python_source(method) + fmt::format("        return self.{}({{{}}})\n", call, arguments_of(method));
+  return out;
 }
 
 std::vector<std::string> python_method_names() {
-  std::vector<std::string> names{"export"};
+  std::vector<std::string> names{"export", "publish"};
   for (const EditType* type : edit_types()) names.push_back(python_name(type->op));
   return names;
 }

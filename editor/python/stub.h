@@ -6,12 +6,12 @@
 
 namespace rebake {
 
-/// The type stub of the Python module, rebake.pyi: a fixed part, export(), and a method per edit, with fields,
-/// types and defaults.
+/// The type stub of the Python module, rebake.pyi: a fixed part, export(), publish(), and a method per edit, with
+/// fields, types and defaults.
 std::string python_stub();
 
-/// Python source of a class Methods: export(), which calls self._export(fields), and a method per edit, which calls
-/// self._edit(op, fields).
+/// Python source of a class Methods: export() and publish(), which call self._export(fields) and self._publish(fields),
+/// and a method per edit, which calls self._edit(op, fields).
 std::string python_methods();
 /// The names of these methods.
 std::vector<std::string> python_method_names();

@@ -129,6 +129,13 @@ class Module(unittest.TestCase):
                 self.document.export(self.at / "none", **wrong)
         self.assertFalse((self.at / "none").exists())
 
+    def test_publish(self):
+        notes = self.document.publish(self.at / "page.html", single_file=True, title="A & B")
+        self.assertIn("2328 triangles", notes[0])
+        self.assertIn("<title>A &amp; B</title>", (self.at / "page.html").read_text())
+        with self.assertRaisesRegex(rebake.Error, "must end in .html"):
+            self.document.publish(self.at / "page", single_file=True)
+
     def test_history_journal_and_project(self):
         self.document.keep_journal(self.at / "j")
         self.document.transform(node="ficus", translate=[0, 1, 0])
