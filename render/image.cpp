@@ -139,6 +139,8 @@ void check_picture_path(const std::filesystem::path& path, const SourceGuard& gu
     throw FileError(path, "exists and is not a picture, so it is not replaced; choose another name");
 }
 
+bool is_picture_file(const std::filesystem::path& path) { return begins_as_picture(beginning_of(path)); }
+
 bool is_rendered_picture(const std::filesystem::path& path) {
   const std::string bytes = beginning_of(path);
   return (bytes.starts_with("\x89PNG") && bytes.find(software_text) != std::string::npos) ||

@@ -24,6 +24,8 @@ std::string picture_extensions();
 /// Throws FileError if write_picture() would reject the path: its extension is that of a format that cannot be written,
 /// `guard` protects it, or it exists and is not a picture. For a check before expensive work.
 void check_picture_path(const std::filesystem::path& path, const SourceGuard& guard);
+/// Whether a file begins as a picture of a known format.
+bool is_picture_file(const std::filesystem::path& path);
 /// Whether a file is a PNG or JPEG that write_picture() made.
 bool is_rendered_picture(const std::filesystem::path& path);
 /// Writes a picture file atomically: PNG and WebP without loss, JPEG with quality 95, or OpenEXR with linear

@@ -26,14 +26,13 @@ bool holds_cameras(const std::filesystem::path& path) {
 }
 
 // Cameras in a file are poses that nobody may be able to make again.
-void refuse_replacing_cameras(const std::filesystem::path& path, const std::vector<std::string>& names,
-                              const CameraFormat& format) {
+void refuse_replacing_cameras(const std::filesystem::path& path, const std::vector<std::string>& names) {
   const CameraFormat* there = camera_format_at(path);
   if (there == nullptr) return;
   const auto refuse = [&](const std::string& what) {
     throw FileError(path, what + ", so it is not replaced; choose another name");
   };
-  if (there->name != std::string_view(format.name)) refuse(fmt::format("has cameras in the format {}", there->name));
+  if (there->write == nullptr) refuse(fmt::format("has cameras in the format {}, which is not written", there->name));
   std::vector<std::string> notes;
   const std::vector<PhotoCamera> cameras = read_cameras(path, "", {}, notes);
   if (cameras.size() > names.size())
@@ -64,7 +63,7 @@ void run(Session& session, const ExportViewsAction& action) {
   const std::vector<std::string> names = action.views.empty() ? view_names(scene) : action.views;
   if (names.empty()) throw FieldError("views", "is empty, and the scene has no stored views");
   std::vector<PhotoCamera> cameras;
-  refuse_replacing_cameras(action.out, names, format);
+  refuse_replacing_cameras(action.out, names);
   for (const std::string& name : names)
     cameras.push_back(photo_camera(stored_view(scene, name, "views"), name + ".png", action.width, action.height));
   write_file_atomically(action.out, format.write(from_y_up(std::move(cameras), action.world.value_or(format.up))),

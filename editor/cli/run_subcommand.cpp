@@ -83,6 +83,8 @@ void protect_input_files(Document& document, const std::string& script,
                          const std::map<std::string, std::string>& variables) {
   for (const ScriptInput& input : script_inputs(script, variables)) {
     std::error_code error;
+    // A file that the script writes itself and then reads; a second run finds that of the first.
+    if (input.written_before && std::filesystem::is_regular_file(input.path, error)) continue;
     if (scene_root(input.path) == input.path && std::filesystem::is_regular_file(input.path, error))
       document.protect_input(input.path, "a file that this script reads");
     else if (input.content_known)

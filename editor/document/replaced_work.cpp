@@ -33,9 +33,11 @@ std::string without_scale(const fs::path& folder) {
 // A picture is taken for a photograph or mask if the cameras name it, or another one in its folder.
 void refuse_replacing_photographs(const fs::path& path, const fs::path& folder) {
   std::error_code error;
+  const bool is_picture = is_picture_file(path);
   const std::string place = without_scale(fs::weakly_canonical(folder, error));
   for (const fs::path& file : captured_files_at(folder))
-    if (fs::equivalent(file, path, error) || without_scale(fs::weakly_canonical(file.parent_path(), error)) == place)
+    if (fs::equivalent(file, path, error) ||
+        (is_picture && without_scale(fs::weakly_canonical(file.parent_path(), error)) == place))
       throw FileError(path, "belongs to a capture: photographs or masks are in its folder; name another folder");
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "editor/document/sources.h"
 #include "editor/script/script.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -28,6 +30,7 @@ void add_input_files(json line, std::vector<ScriptInput>& inputs) {
 
 std::vector<ScriptInput> script_inputs(std::string_view script, const std::map<std::string, std::string>& variables) {
   std::vector<ScriptInput> inputs;
+  std::set<std::filesystem::path> written;
   const std::string lines = with_line_feeds(script);
   std::string_view text = lines;
   while (!text.empty()) {
@@ -39,11 +42,16 @@ std::vector<ScriptInput> script_inputs(std::string_view script, const std::map<s
       json object = read_line(line);
       if (!object.is_object()) continue;
       object = with_variables(std::move(object), variables);
+      const std::size_t before = inputs.size();
       if (const json* source = source_field(object); source != nullptr && source->is_string())
         inputs.push_back({source->get<std::string>(), object.contains("content")});
       add_input_files(object, inputs);
       if (const auto mesh = object.find("mesh"); mesh != object.end() && mesh->is_string())
         inputs.push_back({mesh->get<std::string>(), false});
+      for (std::size_t k = before; k < inputs.size(); ++k)
+        inputs[k].written_before = written.contains(absolute_path(inputs[k].path));
+      if (const auto out = object.find("out"); out != object.end() && out->is_string())
+        written.insert(absolute_path(out->get<std::string>()));
     } catch (const std::exception&) {
       // run_script() reports the error.
     }

@@ -11,7 +11,8 @@ namespace rebake {
 /// A file or scene folder that a script reads.
 struct ScriptInput {
   std::filesystem::path path;
-  bool content_known;  ///< its line has the field `content`, a hash of the expected content
+  bool content_known;           ///< its line has the field `content`, a hash of the expected content
+  bool written_before = false;  ///< an earlier line writes it: its field `out` has this path
 };
 
 /// All inputs of a script (imports, environment maps, cage meshes, cameras, photographs, masks) in the order of its

@@ -11,12 +11,12 @@
 #include "mesh_ops/formats/meshes/gltf_scene.h"
 #include "mesh_ops/formats/meshes/obj_scene.h"
 #include "mesh_ops/formats/meshes/ply_scene.h"
-#include "mesh_ops/formats/meshes/write_gltf.h"
 #include "mesh_ops/formats/mobilenerf/baked_files.h"
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder_files.h"
 #include "mesh_ops/formats/scene_files.h"
+#include "mesh_ops/formats/write_gltf.h"
 
 namespace rebake {
 

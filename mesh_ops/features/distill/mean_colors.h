@@ -14,7 +14,7 @@ struct MeanColors {
   std::vector<std::uint8_t> rgba;  ///< row by row; alpha 255 where the texel is opaque, else 0
 };
 
-/// What an object loses with its view dependence.
+/// Loss of an object's view dependence.
 struct MeanColorLoss {
   double squares = 0;      ///< weighted sum of squared differences of display colours, per channel
   double weight = 0;       ///< sum of the weights of texels and directions

@@ -237,6 +237,29 @@ TEST_F(Cli, PublishedPagesReplaceOnlyPages) {
   EXPECT_EQ(rebake_run(publish + in("page2") + " --single-file").code, 2) << "must end in .html";
 }
 
+// A script that reads a file of its own runs again, like one that imports its own export.
+TEST_F(Cli, ScriptsMayReadTheFilesThatTheyWrite) {
+  write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + R"("}
+{"op": "view", "name": "front", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0]}}
+{"op": "render", "view": "front", "out": ")" +
+                                in("front.png") + R"(", "width": 8, "height": 8}
+{"op": "export_views", "out": ")" +
+                                in("views.json") + R"("}
+{"op": "import_views", "path": ")" +
+                                in("views.json") + R"(", "prefix": "again-"})");
+  for (int twice = 0; twice < 2; ++twice) {
+    const Outcome done = rebake_run("run " + in("s.jsonl"));
+    EXPECT_EQ(done.code, 0) << done.text;
+  }
+  // Not one that it reads first.
+  write_text(in("t.jsonl"), R"({"op": "import", "path": ")" + in("ball") + R"("}
+{"op": "import_views", "path": ")" +
+                                in("views.json") + R"("}
+{"op": "export_views", "out": ")" +
+                                in("views.json") + R"("})");
+  EXPECT_EQ(rebake_run("run " + in("t.jsonl")).code, 1);
+}
+
 TEST_F(Cli, BatchesDoNotShareAReport) {
   write_text(in("s.jsonl"), R"({"op": "select", "all": true})");
   const std::string batch = "batch " + in("s.jsonl") + " --scenes " + in("ball") + " -o " + in("out");

@@ -1,4 +1,4 @@
-#include "mesh_ops/formats/meshes/write_gltf.h"
+#include "mesh_ops/formats/write_gltf.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // Scenes as glTF: places, mean colours, names, cameras. Read back by Rebake's reader, and as JSON.
-#include "mesh_ops/formats/meshes/write_gltf.h"
+#include "mesh_ops/formats/write_gltf.h"
 
 #include <gtest/gtest.h>
 
