@@ -243,7 +243,9 @@ void run(Session& session, const ExportAction& action) {
     export_plain(session, scene, action);
   else
     export_exact(session, scene, action);
-  if (replaces) session.say("note: the existing folder was replaced");
+  if (replaces)
+    session.say(fmt::format("note: the existing {} was replaced",
+                            std::filesystem::is_directory(action.out, error) ? "folder" : "file"));
 }
 
 REBAKE_DESCRIBE_ACTION(

@@ -131,7 +131,7 @@ constexpr Format table[] = {
      read_nerf2mesh, nerf2mesh_files, write_nerf2mesh, &nerf2mesh_folder},
     {"obj", "OBJ", "textured meshes", obj_extension, false, true, is_single_file<obj_extension>,
      read_single_file<read_obj_object>, obj_files, nullptr, nullptr},
-    {"gltf", "glTF", "meshes of mean colours, for modelling programs", glb_extension, false, true,
+    {"gltf", "glTF", "meshes of mean colours, for modelling programs", glb_extension, false, false,
      is_single_file<glb_extension>, read_single_file<read_gltf_object>, gltf_files, write_gltf, nullptr},
     {"gltf_text", "glTF", "textured meshes", gltf_extension, false, true, is_single_file<gltf_extension>,
      read_single_file<read_gltf_object>, gltf_files, nullptr, nullptr},

@@ -21,7 +21,7 @@ struct Format {
   const char* help;    ///< its use: "keeps every node"
   const char* marker;  ///< main file of a folder, which stands for it ("mlp.json"), or extension of a file (".glb")
   bool is_folder;      ///< a folder; otherwise a single file
-  bool has_colors;     ///< whether it stores colours, so that an export reports how pictures change
+  bool has_colors;     ///< whether it keeps colours with their view dependence: exports report how pictures change
 
   /// Whether read() accepts this path; null for formats that are only written.
   bool (*recognises)(const std::filesystem::path& path);
