@@ -17,6 +17,7 @@
 #include <optional>
 #include <set>
 
+#include "editor/batch/batch_claims.h"
 #include "editor/batch/batch_mark.h"
 #include "editor/document/sources.h"
 #include "editor/script/script_inputs.h"
@@ -81,37 +82,6 @@ void set_quality_message(BatchResult& result, bool below_requested_psnr) {
   result.below_requested_psnr = below_requested_psnr;
   if (below_requested_psnr) result.message = "an export is below the requested psnr; the log names the worst object";
 }
-
-// Ownership of outputs by scenes, across all shards: one file per output that is created exclusively and has the
-// scene's name.
-class Claims {
- public:
-  explicit Claims(fs::path folder) : folder_(std::move(folder)) { fs::create_directories(folder_); }
-
-  // Claims an output for a scene. Returns the name of the scene that owns it already; empty if the claim succeeds.
-  std::string claim(const std::string& output, const std::string& scene) const {
-    const fs::path path = path_of(output);
-    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file >= 0) {
-      const bool whole = ::write(file, scene.data(), scene.size()) == static_cast<ssize_t>(scene.size());
-      ::close(file);
-      if (!whole) throw FileError(path, "cannot be written");
-      return "";
-    }
-    if (errno != EEXIST) throw FileError(path, "cannot be created");
-    const std::string other = read_file(path);
-    return other == scene ? "" : other.empty() ? "another scene" : other;
-  }
-  void release(const std::string& output, const std::string& scene) const {
-    const fs::path path = path_of(output);
-    if (fs::exists(path) && read_file(path) == scene) fs::remove(path);
-  }
-
- private:
-  fs::path path_of(const std::string& output) const { return folder_ / hash_text(content_hash(output)); }
-
-  fs::path folder_;
-};
 
 // Threads per process, so that all processes together have one thread per core.
 int threads_of_each(int jobs) { return std::max(1, tbb::this_task_arena::max_concurrency() / jobs); }
@@ -457,7 +427,7 @@ class BatchRun {
         return false;
       }
       for (const BatchMark::File& output : outputs) claims_->release(output.path, result.name);
-      // Present until the process has ended well; with `.files` it tells what is there.
+      // Present until the process has ended well. Together with `.files` it lists the outputs of a run that did not.
       const fs::path unfinished = state_file(result, ".unfinished");
       fs::remove(unfinished);
       write_file_atomically(unfinished, with_relative_outputs(list_of(outputs), options_.out), {});
@@ -524,7 +494,7 @@ class BatchRun {
   std::vector<fs::path> scenes_;
   std::vector<BatchResult> results_;
   fs::path sources_;  // list of protected paths
-  std::optional<Claims> claims_;
+  std::optional<BatchClaims> claims_;
   std::size_t over_ = 0;
   Processes running_;  // ended first
 };

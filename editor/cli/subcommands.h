@@ -24,7 +24,7 @@ inline constexpr Subcommand subcommand_table[] = {
     {"info", "prints the contents of a folder or scene", describe_info},
     {"render", "renders folders or scenes to a picture file", describe_render},
     {"run", "runs a script of edits and actions (one JSON object per line)", describe_run},
-    {"export", "exports a folder or scene in the MobileNeRF format", describe_export},
+    {"export", "exports a scene as a MobileNeRF folder, or in another format", describe_export},
     {"publish", "publishes a scene as a web page", describe_publish},
     {"repair", "writes a folder that other tools have changed as other programs expect it", describe_repair},
     {"batch", "runs one script on many scenes; each is imported as the node \"scene\" and exported at the end",

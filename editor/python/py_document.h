@@ -20,9 +20,9 @@ namespace py = pybind11;
 
 class PyDocument;
 
-/// Sources of all documents of the process: no output of one may replace a source of another. Exports of the process
-/// may be replaced as long as documents only import them, for notebooks that open what they exported and export it
-/// again. Thread-safe.
+/// Sources of all documents of the process: no output of one may replace a source of another. A folder that the process
+/// exported may be replaced while other documents only import it: notebooks open their exports and export again.
+/// Thread-safe.
 class LiveDocuments {
  public:
   struct Entry {
