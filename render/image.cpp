@@ -78,13 +78,26 @@ bool begins_as_picture(std::string_view bytes) {
          (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP"));
 }
 
+// Interleaved channels of a picture: RGB, or RGBA.
+std::vector<std::uint8_t> pixels_of(const Image& image) {
+  if (image.alpha.empty()) return image.rgb;
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(4 * image.alpha.size());
+  for (std::size_t p = 0; p < image.alpha.size(); ++p) {
+    pixels.insert(pixels.end(), &image.rgb[3 * p], &image.rgb[3 * p] + 3);
+    pixels.push_back(image.alpha[p]);
+  }
+  return pixels;
+}
+
 // The bytes of a picture file. Throws FileError.
 std::string encoded(const Image& image, const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   const auto format = std::find_if(written_formats.begin(), written_formats.end(),
                                    [&](const WrittenFormat& one) { return one.extension == extension; });
   if (format == written_formats.end())
-    return with_software(encode_png(image.width, image.height, 3, image.rgb, compression_level));
+    return with_software(
+        encode_png(image.width, image.height, image.alpha.empty() ? 3 : 4, pixels_of(image), compression_level));
   const PictureCodecs& codecs = picture_codecs(path);
   std::string bytes, error;
   bool done = false;
@@ -92,11 +105,20 @@ std::string encoded(const Image& image, const std::filesystem::path& path) {
     std::array<float, 256> light{};
     for (std::size_t k = 0; k < light.size(); ++k)
       light[k] = static_cast<float>(to_linear(static_cast<double>(k) / 255));
-    std::vector<float> pixels(image.rgb.size());
-    std::transform(image.rgb.begin(), image.rgb.end(), pixels.begin(), [&](std::uint8_t byte) { return light[byte]; });
-    done = codecs.encode(format->name, image.width, image.height, pixels.data(), bytes, error);
+    std::vector<FloatChannel> channels{{"R", true}, {"G", true}, {"B", true}};
+    if (!image.alpha.empty()) channels.push_back({"A", true});
+    std::vector<float> pixels;
+    pixels.reserve(image.rgb.size() / 3 * channels.size());
+    for (std::size_t p = 0; p < image.rgb.size() / 3; ++p) {
+      const float alpha = image.alpha.empty() ? 1 : static_cast<float>(image.alpha[p]) / 255;
+      for (std::size_t c = 0; c < 3; ++c) pixels.push_back(light[image.rgb[3 * p + c]] * alpha);
+      if (!image.alpha.empty()) pixels.push_back(alpha);
+    }
+    done = codecs.encode_exr(image.width, image.height, channels, {}, pixels.data(), bytes, error);
   } else {
-    done = codecs.encode(format->name, image.width, image.height, image.rgb.data(), bytes, error);
+    const bool has_alpha = !image.alpha.empty() && holds_alpha(path);
+    const std::vector<std::uint8_t> pixels = has_alpha ? pixels_of(image) : image.rgb;
+    done = codecs.encode(format->name, image.width, image.height, has_alpha ? 4 : 3, pixels.data(), bytes, error);
   }
   if (!done) throw FileError(path, "cannot be encoded: " + picture_problem(error, path));
   return format->name == std::string_view("jpeg") ? with_comment(bytes) : bytes;
@@ -113,13 +135,18 @@ Image read_image(const std::filesystem::path& path) {
   const int channels = layout.channels;
   std::vector<std::uint8_t> raw(static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height) *
                                 static_cast<std::size_t>(channels));
-  Image image{layout.width, layout.height, {}};
+  Image image{layout.width, layout.height, {}, {}};
   if (!reader->read(0, layout.height, channels, raw.data()))
     throw FileError(path, "cannot be decoded, it may be truncated: " + picture_problem(reader->error(), path));
   image.rgb.reserve(raw.size());
   for (std::size_t p = 0; p < raw.size(); p += static_cast<std::size_t>(channels))
     for (std::size_t c = 0; c < 3; ++c) image.rgb.push_back(raw[p + (channels >= 3 ? c : 0)]);
   return image;
+}
+
+bool holds_alpha(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  return extension != ".jpg" && extension != ".jpeg";
 }
 
 std::string picture_extensions() {

@@ -9,11 +9,12 @@
 
 namespace rebake {
 
-/// An 8-bit RGB picture in display colours, row 0 at the top.
+/// An 8-bit picture in display colours, row 0 at the top.
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgb;  ///< width × height × 3 bytes, row by row
+  std::vector<std::uint8_t> rgb;      ///< width × height × 3 bytes, row by row; not multiplied by alpha
+  std::vector<std::uint8_t> alpha{};  ///< width × height bytes; empty: opaque
   bool operator==(const Image&) const = default;
 };
 
@@ -28,9 +29,11 @@ void check_picture_path(const std::filesystem::path& path, const SourceGuard& gu
 bool is_picture_file(const std::filesystem::path& path);
 /// Whether a file is a PNG or JPEG that write_picture() made.
 bool is_rendered_picture(const std::filesystem::path& path);
-/// Writes a picture file atomically: PNG and WebP without loss, JPEG with quality 95, or OpenEXR with linear
-/// light (IEC 61966-2-1) in half floats. Unknown extensions mean PNG. Throws FileError, also if `guard` protects the
-/// path.
+/// Whether write_picture() can write alpha into a file of this name: not into JPEGs.
+bool holds_alpha(const std::filesystem::path& path);
+/// Writes a picture file atomically, with alpha if the picture has it and the format holds it: PNG and WebP without
+/// loss, JPEG with quality 95, or OpenEXR with linear light (IEC 61966-2-1) in half floats, multiplied by alpha.
+/// Unknown extensions mean PNG. Throws FileError, also if `guard` protects the path.
 void write_picture(const Image& image, const std::filesystem::path& path, const SourceGuard& guard);
 
 }  // namespace rebake

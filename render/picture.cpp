@@ -148,8 +148,10 @@ class Renderer::Impl {
     const gl::CurrentContextScope current(*context_);
     const View& view = shown_;
     Image image{
-        view.width, view.height,
-        std::vector<std::uint8_t>(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 3)};
+        view.width,
+        view.height,
+        std::vector<std::uint8_t>(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 3),
+        {}};
     std::vector<std::uint8_t> rgba(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height) * 4);
     glBindFramebuffer(GL_FRAMEBUFFER, picture_buffer());
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -158,6 +160,19 @@ class Renderer::Impl {
     for (std::size_t y = 0; y < height; ++y)
       for (std::size_t x = 0; x < width; ++x)
         std::memcpy(&image.rgb[(y * width + x) * 3], &rgba[((height - 1 - y) * width + x) * 4], 3);
+    if (!drawn_ || !drawn_->options.transparent) return image;
+    image.alpha.resize(width * height);
+    for (std::size_t y = 0; y < height; ++y)
+      for (std::size_t x = 0; x < width; ++x) {
+        const std::size_t pixel = y * width + x;
+        const unsigned alpha = rgba[((height - 1 - y) * width + x) * 4 + 3];
+        image.alpha[pixel] = static_cast<std::uint8_t>(alpha);
+        // Files store colours that are not multiplied by alpha.
+        for (std::size_t c = 0; alpha > 0 && c < 3; ++c) {
+          std::uint8_t& channel = image.rgb[pixel * 3 + c];
+          channel = static_cast<std::uint8_t>(std::min(255U, (channel * 255U + alpha / 2) / alpha));
+        }
+      }
     return image;
   }
 
@@ -180,7 +195,8 @@ class Renderer::Impl {
     glDisable(GL_SCISSOR_TEST);
     if (frame_plan.kept) restrict_to_covered(frame_plan, 1);
     const Color& b = frame_plan.background;
-    const float background[4] = {static_cast<float>(b.x()), static_cast<float>(b.y()), static_cast<float>(b.z()), 1};
+    const float background[4] = {static_cast<float>(b.x()), static_cast<float>(b.y()), static_cast<float>(b.z()),
+                                 frame_plan.options.transparent ? 0.0F : 1.0F};
     glClearBufferfv(GL_COLOR, 0, background);
     FrameTimes times;
     for (const Effect* pass : effect_table()) {

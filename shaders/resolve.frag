@@ -28,7 +28,7 @@ uniform sampler2D light_offset;
 #endif
 uniform vec2 ray_scale;   // camera-space ray of a sample = (sample + 0.5) * ray_scale + ray_offset, z = -1
 uniform vec2 ray_offset;
-uniform vec3 background;
+uniform vec4 background;  // alpha 0: transparent, with premultiplied colours
 out vec4 picture;
 
 const float samples = float(SIDE * SIDE);
@@ -124,7 +124,7 @@ void main() {
 #if WRITES_LIGHT
   color = relit_by(light, float(sums.count), color);
 #endif
-  picture = vec4(color * coverage + (1.0 - coverage) * background, 1.0);
+  picture = vec4(color * coverage, coverage) + (1.0 - coverage) * background;
 }
 #else
 // Evaluates each decoder once, with the average of its own samples; all others count as uncovered.
@@ -169,6 +169,6 @@ void main() {
     coverage += share;
   }
   if (coverage == 0.0) discard;
-  picture = vec4(color + (1.0 - coverage) * background, 1.0);
+  picture = vec4(color, coverage) + (1.0 - coverage) * background;
 }
 #endif

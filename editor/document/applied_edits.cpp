@@ -33,7 +33,7 @@ bool is_same(const Edit& own, const Edit& wanted) {
 // Compares all input of edits; nodes and light by pointer, since unchanged data is shared.
 bool same_scene(const Scene& a, const Scene& b) {
   return a.roots == b.roots && a.background == b.background && a.views == b.views && a.next_id == b.next_id &&
-         a.light == b.light && a.ground == b.ground;
+         a.light == b.light && a.ground == b.ground && a.camera_keys == b.camera_keys;
 }
 
 }  // namespace

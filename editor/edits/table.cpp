@@ -22,6 +22,7 @@
   X(ImportViews) \
   X(RenameView) \
   X(RemoveView) \
+  X(Key) \
   X(Background) \
   X(GroundEdit) \
   X(LightEdit) \

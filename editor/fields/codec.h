@@ -67,6 +67,7 @@ REBAKE_CODEC(PixelSize);
 REBAKE_CODEC(RareFlag);
 REBAKE_CODEC(FormatName);
 REBAKE_CODEC(CameraFormatName);
+REBAKE_CODEC(Interpolation);
 REBAKE_CODEC(WorldUp);
 REBAKE_CODEC(FuseWidth);
 REBAKE_CODEC(FuseMethod);

@@ -105,6 +105,12 @@ const Words<CoordinateFrame>& frame_words() {
   return words;
 }
 
+const Words<Interpolation>& interpolation_words() {
+  static const Words<Interpolation> words{
+      {"smooth", Interpolation::smooth}, {"linear", Interpolation::linear}, {"step", Interpolation::step}};
+  return words;
+}
+
 const Words<WorldUp>& world_up_words() {
   static const Words<WorldUp> words{{"y_up", WorldUp::y}, {"z_up", WorldUp::z}};
   return words;
@@ -365,6 +371,12 @@ CameraFormatName Codec<CameraFormatName>::read(const json& value, const Scene& s
   return {camera_format_named(Codec<std::string>::read(value, scene)).name};
 }
 json Codec<CameraFormatName>::write(const CameraFormatName& value) { return value.name.empty() ? "auto" : value.name; }
+
+FieldType Codec<Interpolation>::type() { return type_of(interpolation_words()); }
+Interpolation Codec<Interpolation>::read(const json& value, const Scene&) {
+  return read_word(value, interpolation_words());
+}
+json Codec<Interpolation>::write(const Interpolation& value) { return write_word(value, interpolation_words()); }
 
 FieldType Codec<WorldUp>::type() { return type_of(world_up_words()); }
 WorldUp Codec<WorldUp>::read(const json& value, const Scene&) { return read_word(value, world_up_words()); }

@@ -227,6 +227,31 @@ class Document:
 
         name: name of the view
         """
+    def key(self, *, time: float, node: Node | None = None, position: Vector | None = None, rotation: Rotation | None = None, scale: float | Vector | None = None, camera: Camera | None = None, view: str = "", degrees: float | None = None, track: str = "bend", selection: str = "", box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, axis: Vector | Literal["auto"] = [0.0,1.0,0.0], origin: Vector | None = None, spine: Sequence[Sequence[float]] = [], from_: float | None = None, to: float | None = None, direction: Vector = [1.0,0.0,0.0], interpolation: Literal["smooth", "linear", "step"] = "smooth", remove: bool = False) -> None:
+        """Sets a keyframe of the camera, of a node's place, or of the angle of a bend. Films, published pages and glTF files move by keyframes.
+
+        time: time in seconds
+        node: node to place or to bend; without one, the keyframe is the camera's
+        position: position relative to the parent; default: the present place (scene units)
+        rotation: rotation relative to the parent; default: the present one
+        scale: factors along the node's axes; default: the present ones
+        camera: the camera
+        view: name of the stored view that the camera takes
+        degrees: bends the node by this angle at that time (degrees)
+        track: name of the bend; a node can have several
+        selection: bend: only triangles of this stored selection; a bend keeps its region and axis from keyframe to keyframe unless they are given again
+        box: bend: only triangles whose centre is inside
+        frame: coordinates of the box: world; node: object space; bounds: relative to the object's box, 0 to 1
+        falloff: bend: width of the soft border; 0: hard (scene units)
+        axis: direction of the axis in world space; auto: along the part, from where it is attached, following its centre line (tapers: straight); origin and spine must then be left out
+        origin: world point on the axis; default: the axis runs through the middle of the triangles' box, from its lower end
+        spine: world points of a curved axis; the straight axis then only defines the plane of the bend; from and to are arc lengths along the curve; not for tapers
+        from_: lower limit along the axis, from the origin; default: lower end of the triangles (scene units)
+        to: upper limit; default: upper end of the triangles (scene units)
+        direction: bend: its direction
+        interpolation: how the value moves to the next keyframe
+        remove: remove the keyframe at this time; for a bend, with any degrees
+        """
     def background(self, *, color: Vector) -> None:
         """Sets the background colour.
 

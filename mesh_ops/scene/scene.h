@@ -10,6 +10,7 @@
 
 #include "mesh_ops/scene/camera.h"
 #include "mesh_ops/scene/ground_plane.h"
+#include "mesh_ops/scene/keyframes.h"
 #include "mesh_ops/scene/object.h"
 #include "mesh_ops/scene/scene_light.h"
 
@@ -31,6 +32,7 @@ struct Node {
   std::shared_ptr<const BakedObject> object;     ///< null for groups
   std::shared_ptr<const TriangleSet> selection;  ///< null if nothing is selected
   std::map<std::string, std::shared_ptr<const TriangleSet>> saved_selections;
+  std::shared_ptr<const NodeMotion> motion;  ///< null without keyframes
   std::vector<NodePtr> children;
 };
 
@@ -40,6 +42,7 @@ struct Scene {
   Color background{1, 1, 1};
   Ground ground;
   std::map<std::string, Camera> views;
+  Keyframes<Camera> camera_keys;            ///< camera of films; empty: none
   std::uint64_t next_id = 1;                ///< identity of the next added node
   std::shared_ptr<const SceneLight> light;  ///< null: colours stay as baked
 };

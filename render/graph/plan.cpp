@@ -92,7 +92,7 @@ void omit_view_direction(FramePlan& plan) {
 // Reduces the samples to 1 per pixel if everything that a pixel may show differs by at most `unseen`, background
 // included.
 void reduce_samples(FramePlan& plan) {
-  if (plan.options.everything || plan.view.samples == 1 || plan.draws.empty()) return;
+  if (plan.options.everything || plan.options.transparent || plan.view.samples == 1 || plan.draws.empty()) return;
   // Per decoder: range of the features in all textures that a pixel may mix.
   std::vector<std::optional<FeatureRange>> features(plan.decoders.size());
   for (const Draw& draw : plan.draws) {
@@ -169,7 +169,7 @@ FramePlan plan(const Scene& scene, const View& view, const RenderOptions& option
   result.view = view;
   if (guides != nullptr && guides->inspect != Guides::Inspect::none) result.view.samples = 1;
   result.options = options;
-  result.background = scene.background;
+  result.background = options.transparent ? Color(0, 0, 0) : scene.background;
   const Mat3 camera_rows = world_to_camera(view.camera);
   std::size_t turned = 0, culled = 0, hidden = 0;
   TextureBytes textures;

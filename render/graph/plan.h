@@ -43,7 +43,8 @@ struct RenderOptions {
   Precision precision = Precision::full;
   Occlusion occlusion = Occlusion::automatic;
   Texels texels = Texels::automatic;
-  bool everything = false;  ///< do not skip work that changes colours by less than `unseen`; for audits
+  bool transparent = false;  ///< the background is transparent: pictures get an alpha channel
+  bool everything = false;   ///< do not skip work that changes colours by less than `unseen`; for audits
 
   bool operator==(const RenderOptions&) const = default;
 };
@@ -111,8 +112,8 @@ struct PlannedPass {
 /// Plan of a frame: all that the renderer needs to know to draw it.
 struct FramePlan {
   View view;
-  RenderOptions options;  ///< with automatic choices resolved
-  Color background{1, 1, 1};
+  RenderOptions options;      ///< with automatic choices resolved
+  Color background{1, 1, 1};  ///< black if transparent
   std::vector<Draw> draws;
   std::vector<std::shared_ptr<const Decoder>> decoders;  ///< distinct decoders in view
   std::vector<DecodeFrame> frames;                       ///< distinct, in view

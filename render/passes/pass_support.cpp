@@ -135,6 +135,9 @@ void set_uniform(const gl::Program& program, const char* name, const glm::vec2& 
 void set_uniform(const gl::Program& program, const char* name, const glm::vec3& value) {
   glUniform3fv(location(program, name), 1, glm::value_ptr(value));
 }
+void set_uniform(const gl::Program& program, const char* name, const glm::vec4& value) {
+  glUniform4fv(location(program, name), 1, glm::value_ptr(value));
+}
 void set_uniform(const gl::Program& program, const char* name, const glm::ivec2& value) {
   glUniform2iv(location(program, name), 1, glm::value_ptr(value));
 }

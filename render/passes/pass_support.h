@@ -33,6 +33,7 @@ void set_uniform(const gl::Program& program, const char* name, float value);
 void set_uniform(const gl::Program& program, const char* name, unsigned value);
 void set_uniform(const gl::Program& program, const char* name, const glm::vec2& value);
 void set_uniform(const gl::Program& program, const char* name, const glm::vec3& value);
+void set_uniform(const gl::Program& program, const char* name, const glm::vec4& value);
 void set_uniform(const gl::Program& program, const char* name, const glm::ivec2& value);
 void set_uniform(const gl::Program& program, const char* name, const glm::mat3& value);
 void set_uniform(const gl::Program& program, const char* name, const glm::mat4& value);

@@ -73,8 +73,7 @@ void execute(const PassInput& input) {
   }
   bind_decoders(input, shader);
   set_ray_uniforms(shader, plan.view, side);
-  const Color& b = plan.background;
-  set_uniform(shader, "background", to_glm(b));
+  set_uniform(shader, "background", glm::vec4(to_glm(plan.background), plan.options.transparent ? 0.0F : 1.0F));
   draw_rectangles(plan.view, shader, drawn_pixels(input));
 }
 

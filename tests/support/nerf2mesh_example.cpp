@@ -93,7 +93,7 @@ Nerf2MeshNumbers write_nerf2mesh_example(const fs::path& folder, const Nerf2Mesh
       for (std::uint8_t& value : pixels) value = static_cast<std::uint8_t>(random() % 4 == 0 ? 0 : random() % 200);
       std::string bytes, error;
       if (example.jpeg)
-        picture_codecs(folder).encode("jpeg", side, side, pixels.data(), bytes, error);
+        picture_codecs(folder).encode("jpeg", side, side, 3, pixels.data(), bytes, error);
       else
         bytes = encode_png(side, side, 3, pixels, 6);
       write_bytes(folder / fmt::format("feat{}_{}.{}", image, k, example.jpeg ? "jpg" : "png"), bytes);

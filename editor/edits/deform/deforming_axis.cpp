@@ -65,8 +65,8 @@ Vec3 beside(const Vec3& axis, const Vec3& direction) {
 
 }  // namespace
 
-Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& given, ClosedForm form) {
-  const DeformSet set = deform_set(scene, target);
+AxisForm axis_form(const Scene& scene, const DeformSet& set, const DeformTarget& target, const DeformAxis& given,
+                   ClosedForm form) {
   const DeformAxis axis = given.axis.automatic ? found_axis(scene, target, given, form.kind) : given;
   const Vec3& along = axis.axis.direction;
   if (!along.allFinite() || !(along.stableNorm() > 0)) throw FieldError("axis", "must be finite and not zero");
@@ -82,7 +82,7 @@ Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const D
     form.from = axis.from.value_or(0);
     form.to = axis.to.value_or(length);
     check(form);
-    return with_form(scene, set, target, along_curve(form, axis.spine.points), spine_warnings(axis.spine.points));
+    return {form, axis.spine.points};
   }
   if (axis.origin) {
     form.origin = *axis.origin;
@@ -94,7 +94,14 @@ Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const D
   form.from = axis.from.value_or(low - start);
   form.to = axis.to.value_or(high - start);
   check(form);
-  return with_form(scene, set, target, form);
+  return {form, {}};
+}
+
+Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& axis, ClosedForm form) {
+  const DeformSet set = deform_set(scene, target);
+  const AxisForm made = axis_form(scene, set, target, axis, std::move(form));
+  if (made.spine.empty()) return with_form(scene, set, target, made.form);
+  return with_form(scene, set, target, along_curve(made.form, made.spine), spine_warnings(made.spine));
 }
 
 }  // namespace rebake

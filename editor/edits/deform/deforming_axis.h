@@ -29,6 +29,16 @@ struct DeformAxis {
   }
 };
 
+/// A closed form along a straight axis, or along `spine` if it is not empty.
+struct AxisForm {
+  ClosedForm form;
+  std::vector<Vec3> spine;
+};
+/// Completes `form` with the axis and limits for the triangles of `set`, which are those of `target`. Throws as check()
+/// does.
+AxisForm axis_form(const Scene& scene, const DeformSet& set, const DeformTarget& target, const DeformAxis& axis,
+                   ClosedForm form);
+
 /// Completes `form` with the axis and limits, along the spine if there is one, and deforms the target. Throws as
 /// deform_set(), check() and along_curve() do.
 Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& axis, ClosedForm form);

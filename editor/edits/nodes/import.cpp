@@ -50,6 +50,9 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
            scene.background == Scene{}.background))
     result.background = read.background;
   if (take("its light settings", read.light != nullptr, scene.light == nullptr)) result.light = read.light;
+  if (take("its keyframes of the camera", !read.camera_keys.empty() && read.camera_keys != scene.camera_keys,
+           scene.camera_keys.empty()))
+    result.camera_keys = read.camera_keys;
   if (take("its ground", read.ground != Ground{} && read.ground != scene.ground, scene.ground == Ground{}))
     set_ground(result, read.ground);
   else if (const Box box = world_bounds(result); edit.ground && !box.isEmpty())

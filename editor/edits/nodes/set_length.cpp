@@ -21,17 +21,24 @@ Outcome apply(const Scene& scene, const SetLength& edit) {
     if (root->locked)
       throw EditError(fmt::format("\"{}\" is locked; unlock it first, because the whole scene is scaled", root->name));
     result = with_changed(result, root->id, [&](Node& node) {
-      node.to_parent = Affine(Eigen::UniformScaling<double>(factor)) * node.to_parent;
+      const Affine scaling(Eigen::UniformScaling<double>{factor});
+      node.to_parent = scaling * node.to_parent;
+      if (!node.motion) return;
+      NodeMotion motion = *node.motion;
+      for (auto& key : motion.place) key.value = scaling * key.value;
+      node.motion = std::make_shared<const NodeMotion>(std::move(motion));
     });
     check_subtree(result, root->id);
   }
-  for (auto& [name, camera] : result.views) {
+  const auto scale = [&](Camera& camera) {
     camera.eye *= factor;
     camera.target *= factor;
     camera.near_plane *= factor;
     camera.far_plane *= factor;
     camera.ortho_height *= factor;
-  }
+  };
+  for (auto& [name, camera] : result.views) scale(camera);
+  for (auto& key : result.camera_keys) scale(key.value);
   result.ground.height *= factor;
   return {std::move(result),
           {{fmt::format("{:.6g} became {:.6g}; the scene is scaled by {:.6g}", before, edit.length, factor)}}};

@@ -17,12 +17,12 @@
 #include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
 #include "editor/gui/panels/file_dialog_purpose.h"
-#include "editor/gui/platform/child_process.h"
 #include "editor/gui/state/navigation.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
+#include "mesh_ops/base/child_process.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/formats.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "editor/gui/platform/child_process.h"
+#include "mesh_ops/base/child_process.h"
 #include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/scene/camera.h"
 

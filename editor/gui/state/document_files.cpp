@@ -222,7 +222,8 @@ bool Project::unsaved() const {
   const std::shared_ptr<const SceneLight>&now = now_->scene.light, &before = kept.light;
   const bool same_light = now == before || (now && before && *now == *before);
   return now_->scene.roots != kept.roots || now_->scene.views != kept.views ||
-         now_->scene.background != kept.background || now_->scene.ground != kept.ground || !same_light;
+         now_->scene.background != kept.background || now_->scene.ground != kept.ground ||
+         now_->scene.camera_keys != kept.camera_keys || !same_light;
 }
 
 }  // namespace rebake

@@ -31,6 +31,12 @@ struct WebpImage {
   std::vector<std::uint8_t> rgba{};  ///< row by row from the top
 };
 
+/// A channel of an OpenEXR file: "R", "normal.X".
+struct FloatChannel {
+  std::string name;
+  bool half = false;  ///< 16-bit floats instead of 32-bit ones
+};
+
 /// Reads the rows of an open image file.
 class PictureReader {
  public:
@@ -69,13 +75,15 @@ class PictureCodecs {
                                                      const std::string& name, std::string& error) const = 0;
   /// Decodes a WebP in memory as RGBA with the colours as stored, which OpenImageIO would multiply by alpha.
   virtual bool decode_webp(std::string_view bytes, WebpImage& image, std::string& error) const = 0;
-  /// Encodes an RGB image, interleaved, row 0 at the top, in a format of OpenImageIO ("jpeg", "openexr"): 8-bit display
-  /// colours without loss except by JPEG (quality 95, no subsampling), or linear light as half floats. Returns false
-  /// and sets `error` if that fails.
-  virtual bool encode(const std::string& format, int width, int height, const std::uint8_t* pixels, std::string& bytes,
-                      std::string& error) const = 0;
-  virtual bool encode(const std::string& format, int width, int height, const float* pixels, std::string& bytes,
-                      std::string& error) const = 0;
+  /// Encodes an 8-bit image of display colours, RGB or RGBA, interleaved, row 0 at the top, in a format of OpenImageIO
+  /// ("jpeg", "webp"): without loss except by JPEG (quality 95, no subsampling). Returns false and sets `error` if that
+  /// fails.
+  virtual bool encode(const std::string& format, int width, int height, int channels, const std::uint8_t* pixels,
+                      std::string& bytes, std::string& error) const = 0;
+  /// Encodes an OpenEXR file with these channels, interleaved, row 0 at the top, and text attributes.
+  virtual bool encode_exr(int width, int height, const std::vector<FloatChannel>& channels,
+                          const std::vector<std::pair<std::string, std::string>>& attributes, const float* pixels,
+                          std::string& bytes, std::string& error) const = 0;
 
  protected:
   PictureCodecs() = default;

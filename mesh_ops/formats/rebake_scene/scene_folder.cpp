@@ -12,6 +12,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/formats/cameras/camera_json.h"
+#include "mesh_ops/formats/cameras/keyframes_json.h"
 #include "mesh_ops/formats/mobilenerf/baked_files.h"
 #include "mesh_ops/formats/mobilenerf/baked_folder.h"
 #include "mesh_ops/formats/mobilenerf/baked_positions_file.h"
@@ -41,6 +42,7 @@ json node_json(const Node& node, const std::map<const BakedObject*, std::string>
   json out = {{"name", node.name}, {"transform", affine_json(node.to_parent)}};
   if (!node.visible) out["visible"] = false;
   if (node.locked) out["locked"] = true;
+  if (node.motion) out["keyframes"] = motion_json(*node.motion);
   if (node.object) {
     out["folder"] = folder_of.at(node.object.get());
     out["axes"] = axes_word(node.object->axes);
@@ -209,6 +211,7 @@ class SceneReader {
       if (root.contains("ground")) scene.ground = read_ground(root.at("ground"));
       if (root.contains("views"))
         for (const auto& [view, camera] : root.at("views").items()) scene.views[view] = read_camera_json(camera);
+      if (root.contains("camera_keyframes")) scene.camera_keys = read_camera_keys_json(root.at("camera_keyframes"));
       if (root.contains("light")) scene.light = std::make_shared<const SceneLight>(read_light(root.at("light")));
       for (const json& node : root.at("nodes"))
         scene = with_added(scene, read_node(node, 0), NodeId::none, scene.roots.size());
@@ -232,6 +235,13 @@ class SceneReader {
       try {
         orthogonal_factor(node.to_parent.linear());
       } catch (const std::invalid_argument& error) {
+        throw FileError(name_, fmt::format("node \"{}\": {}", node.name, error.what()));
+      }
+    }
+    if (value.contains("keyframes")) {
+      try {
+        node.motion = std::make_shared<const NodeMotion>(read_motion_json(value.at("keyframes")));
+      } catch (const FieldError& error) {
         throw FileError(name_, fmt::format("node \"{}\": {}", node.name, error.what()));
       }
     }
@@ -345,6 +355,7 @@ std::string write_scene_json(const Scene& scene, const std::map<const BakedObjec
     root["ground"] = {{"normal", color_json(scene.ground.normal)}, {"height", scene.ground.height}};
   if (scene.light) root["light"] = light_json(*scene.light);
   for (const auto& [name, camera] : scene.views) root["views"][name] = camera_json(camera);
+  if (!scene.camera_keys.empty()) root["camera_keyframes"] = camera_keys_json(scene.camera_keys);
   for (const NodePtr& node : scene.roots) root["nodes"].push_back(node_json(*node, folder_of, with_bodies));
   return root.dump(1) + '\n';
 }
@@ -359,6 +370,14 @@ std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out
     if (!placed.node->saved_selections.empty())
       notes.push_back(
           fmt::format("the stored selections of \"{}\" are not saved; a project keeps them", placed.node->name));
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->motion)
+      for (const auto& [name, track] : placed.node->motion->bends)
+        if (!track.selection.empty())
+          notes.push_back(
+              fmt::format("the bend \"{}\" of \"{}\" has keyframes for a stored selection, so it is not "
+                          "saved; a project keeps it",
+                          name, placed.node->name));
   std::map<const BakedObject*, std::string> folder_of;
   std::vector<std::shared_ptr<const BakedObject>> written;
   // Bodies are of use only if light follows edits.

@@ -365,7 +365,7 @@ export class Renderer {
     if (targets.light > 0) this.bind(program, 'light_gain', 3, samples.textures.gain);
     if (targets.light > 1) this.bind(program, 'light_offset', 4, samples.textures.offset);
     this.setRays(camera, 2 * width, 2 * height, program);
-    gl.uniform3fv(program.at('background'), this.scene.background);
+    gl.uniform4fv(program.at('background'), [...this.scene.background, 1]);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     ++this.drawCalls;
   }

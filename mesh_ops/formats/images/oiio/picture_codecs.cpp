@@ -98,21 +98,40 @@ class Codecs : public rebake::PictureCodecs {
     return false;
   }
 
-  bool encode(const std::string& format, int width, int height, const std::uint8_t* pixels, std::string& bytes,
-              std::string& error) const override {
+  bool encode(const std::string& format, int width, int height, int channels, const std::uint8_t* pixels,
+              std::string& bytes, std::string& error) const override {
     // OpenImageIO's own WebP files are not without loss.
-    if (format == "webp") return encode_webp(width, height, pixels, bytes, error);
-    return encode_as(format, {width, height, 3, OIIO::TypeDesc::UINT8}, OIIO::TypeDesc::UINT8, pixels, bytes, error);
+    if (format == "webp") return encode_webp(width, height, channels, pixels, bytes, error);
+    return encode_as(format, {width, height, channels, OIIO::TypeDesc::UINT8}, OIIO::TypeDesc::UINT8, pixels, bytes,
+                     error);
   }
-  bool encode(const std::string& format, int width, int height, const float* pixels, std::string& bytes,
-              std::string& error) const override {
-    return encode_as(format, {width, height, 3, OIIO::TypeDesc::HALF}, OIIO::TypeDesc::FLOAT, pixels, bytes, error);
+  bool encode_exr(int width, int height, const std::vector<rebake::FloatChannel>& channels,
+                  const std::vector<std::pair<std::string, std::string>>& attributes, const float* pixels,
+                  std::string& bytes, std::string& error) const override {
+    OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), OIIO::TypeDesc::FLOAT);
+    spec.channelnames.clear();
+    spec.channelformats.clear();
+    bool all_half = true;
+    for (const rebake::FloatChannel& channel : channels) {
+      spec.channelnames.push_back(channel.name);
+      spec.channelformats.emplace_back(channel.half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+      all_half = all_half && channel.half;
+    }
+    if (all_half) {
+      spec.channelformats.clear();
+      spec.format = OIIO::TypeDesc::HALF;
+    }
+    spec.attribute("oiio:ColorSpace", "Linear");
+    for (const auto& [name, text] : attributes) spec.attribute(name, text);
+    return encode_as("openexr", spec, OIIO::TypeDesc::FLOAT, pixels, bytes, error);
   }
 
  private:
-  static bool encode_webp(int width, int height, const std::uint8_t* pixels, std::string& bytes, std::string& error) {
+  static bool encode_webp(int width, int height, int channels, const std::uint8_t* pixels, std::string& bytes,
+                          std::string& error) {
     std::uint8_t* written = nullptr;
-    const std::size_t size = WebPEncodeLosslessRGB(pixels, width, height, 3 * width, &written);
+    const std::size_t size = channels == 4 ? WebPEncodeLosslessRGBA(pixels, width, height, 4 * width, &written)
+                                           : WebPEncodeLosslessRGB(pixels, width, height, 3 * width, &written);
     if (size == 0) {
       error = "the picture is too large for WebP, which holds at most 16383² pixels";
       return false;
@@ -128,7 +147,7 @@ class Codecs : public rebake::PictureCodecs {
     OIIO::Filesystem::IOVecOutput target(written);
     OIIO::Filesystem::IOProxy* proxy = &target;
     spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    spec.attribute("oiio:ColorSpace", spec.format == OIIO::TypeDesc::HALF ? "Linear" : "sRGB");
+    if (format != "openexr") spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("compression", format == "jpeg" ? "jpeg:95" : "zip");
     spec.attribute("jpeg:subsampling", "4:4:4");
     const auto output = OIIO::ImageOutput::create(format);

@@ -1,4 +1,4 @@
-#include "editor/gui/platform/child_process.h"
+#include "mesh_ops/base/child_process.h"
 
 #include <fcntl.h>
 #include <spawn.h>

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "editor/gui/platform/child_process.h"
+#include "mesh_ops/base/child_process.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake::test {
