@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh_ops/motion/scene_at.h"
 #include "render/picture.h"
 
 namespace rebake {
@@ -15,17 +16,28 @@ namespace rebake {
 void run(Session& session, const RenderAction& action) {
   check_picture_path(action.out, session.document.sources());
   refuse_replacing_work(action.out);
-  const Scene scene = with_only(session.scene(), action.nodes);
+  check(action.content, action.out, action.width, action.height);
+  const Scene all = action.time ? scene_at(session.scene(), *action.time) : session.scene();
+  const Scene scene = with_only(all, action.nodes);
   const View view = resolve_view(scene, action.camera, action.view, action.width, action.height, action.samples);
   // Objects that are not drawn still cast shadows.
-  const Lighting lighting = lit(session.scene(), session.progress);
-  const Image picture = session.renderer().render(scene, view, {}, &lighting);
-  write_picture(picture, action.out, session.document.sources());
+  const Lighting lighting = lit(all, session.progress);
+  Image picture;
+  if (action.sheet) {
+    if (!action.content.passes.empty() || action.content.panorama || action.content.transparent)
+      throw FieldError("sheet", "cannot be combined with passes, panorama or transparent");
+    picture = sheet_of_views(session.renderer(), scene, view, *action.sheet, &lighting, session.progress);
+    write_picture(picture, action.out, session.document.sources());
+  } else {
+    picture = render_to_file(session.renderer(), scene, view, {}, &lighting, action.content, action.out,
+                             session.document.sources());
+  }
   session.outputs.push_back(action.out);
   session.say(fmt::format("rendered {}", action.out));
   for (const LightDecision& decision : lighting.summary)
     session.say(fmt::format("light: {} {}: {}", decision.runs ? "runs" : "skipped", decision.name, decision.words()));
-  if (const auto why = blank_reason(scene, view, picture)) session.say(*why);
+  if (action.content.passes.empty() && !action.sheet)
+    if (const auto why = blank_reason(scene, view, picture)) session.say(*why);
 }
 
 REBAKE_DESCRIBE_ACTION(
@@ -38,6 +50,10 @@ REBAKE_DESCRIBE_ACTION(
       visit("width", action.width, Need::optional, "size of the picture", Unit::pixels);
       visit("height", action.height, Need::optional, "size of the picture", Unit::pixels);
       visit("samples", action.samples, Need::optional, "samples per pixel: 1, 4 or 16");
+      PictureContent::fields(action.content, visit);
+      visit("time", action.time, Need::optional, "seconds: the scene as its keyframes move it; default: as it stands");
+      visit("sheet", action.sheet, Need::optional,
+            "columns and rows of a contact sheet of all stored views, width and height of each picture");
       visit("nodes", action.nodes, Need::optional, "only these nodes and their children; default: all");
     })
 

@@ -102,6 +102,7 @@ LoadedScene load_scenes(const std::vector<std::string>& folders, const FolderOpt
     for (const NodePtr& root : read.roots)
       scene = with_added(scene, without_ids(*root), NodeId::none, scene.roots.size());
     for (const auto& [name, camera] : read.views) scene.views.try_emplace(name, camera);
+    if (scene.camera_keys.empty()) scene.camera_keys = read.camera_keys;
   }
   return opened;
 }
@@ -135,15 +136,18 @@ void ViewOptions::add_to(SubcommandDescription& command) {
       .one_of(std::vector<std::string>{"full", "half"});
 }
 
+std::pair<int, int> ViewOptions::pixels() const {
+  const auto sides = split_numbers<int>(size, 'x');
+  if (sides.size() != 2)
+    throw FieldError("--size", fmt::format("\"{}\" must be width and height such as 800x600", size));
+  if (sides[0] < 1 || sides[1] < 1) throw FieldError("--size", "must be at least 1x1");
+  return {sides[0], sides[1]};
+}
+
 View ViewOptions::view(const Scene& scene) const {
   View view;
-  const auto pixels = split_numbers<int>(size, 'x');
-  if (pixels.size() != 2)
-    throw FieldError("--size", fmt::format("\"{}\" must be width and height such as 800x600", size));
-  view.width = pixels[0];
-  view.height = pixels[1];
+  std::tie(view.width, view.height) = pixels();
   view.samples = samples;
-  if (view.width < 1 || view.height < 1) throw FieldError("--size", "must be at least 1x1");
   const double aspect = static_cast<double>(view.width) / view.height;
   view.camera = framing_camera(scene, aspect, fov.value_or(Camera{}.fov_degrees));
   if (!camera_file.empty()) {

@@ -51,6 +51,8 @@ struct ViewOptions {
   /// Starts from the camera file or the stored view that --camera names, else from a camera that frames the scene.
   /// Options override its fields. Throws FieldError, FileError.
   View view(const Scene& scene) const;
+  /// Width and height. Throws FieldError.
+  std::pair<int, int> pixels() const;
   RenderOptions render_options() const;
   /// Sets the scene's background if --background is given. Throws FieldError.
   void set_background(Scene& scene) const;

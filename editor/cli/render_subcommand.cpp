@@ -2,11 +2,14 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "editor/actions/lit.h"
+#include "editor/actions/picture_output.h"
 #include "editor/actions/views.h"
+#include "editor/cli/film_options.h"
 #include "editor/cli/options.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
@@ -16,6 +19,7 @@
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/photo_names.h"
 #include "mesh_ops/formats/cameras/photographs.h"
+#include "mesh_ops/motion/scene_at.h"
 #include "render/compare.h"
 #include "render/picture.h"
 
@@ -33,6 +37,10 @@ struct Rendering {
   std::string cameras, camera_format = "auto", world;
   bool plan = false, json = false, audit = false;
   int time = 0;
+  PictureContent content;
+  std::string sheet;
+  std::optional<double> at;
+  FilmOptions film;
 };
 
 // Minimum, median and maximum.
@@ -118,7 +126,12 @@ void check_photograph_options(const Rendering& options) {
                                     {options.plan, "--plan"},
                                     {options.audit, "--audit"},
                                     {options.json, "--json"},
-                                    {options.time > 0, "--time"}})
+                                    {options.time > 0, "--time"},
+                                    {options.at.has_value(), "--at"},
+                                    {!options.sheet.empty(), "--sheet"},
+                                    {!options.content.passes.empty(), "--passes"},
+                                    {options.content.panorama, "--panorama"},
+                                    {options.content.separate, "--separate"}})
     if (given) throw FieldError(name, "cannot be combined with --cameras");
   if (options.out.empty()) throw FieldError("-o", "is missing: name a folder for the pictures");
 }
@@ -170,23 +183,68 @@ void render_photographs(const Rendering& options) {
   const Progress progress = progress_bar();
   for (std::size_t k = 0; k < views.size(); ++k) {
     progress.at("rendering", static_cast<double>(k) / static_cast<double>(views.size()));
-    write_picture(renderer.render(scene, views[k], options.view.render_options(), &lighting), files[k], sources);
+    render_to_file(renderer, scene, views[k], options.view.render_options(), &lighting, options.content, files[k],
+                   sources);
   }
   print_message(fmt::format("rendered {} pictures into {}", views.size(), options.out));
 }
 
+// "4x3" as columns and rows.
+PixelSize cells_of(const std::string& text) {
+  PixelSize cells;
+  int length = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%n", &cells.width, &cells.height, &length) != 2 ||
+      static_cast<std::size_t>(length) != text.size() || cells.width < 1 || cells.height < 1 || cells.width > 1000 ||
+      cells.height > 1000)
+    throw FieldError("--sheet", "must be columns x rows, such as 4x3");
+  return cells;
+}
+
+// Renders a picture to its file. Returns the picture, empty for passes and sheets.
+Image render_picture(const Rendering& options, Renderer& renderer, const Scene& scene, const View& view,
+                     const Lighting& lighting, const SourceGuard& sources) {
+  const RenderOptions how = options.view.render_options();
+  if (options.sheet.empty())
+    return render_to_file(renderer, scene, view, how, &lighting, options.content, options.out, sources);
+  if (!options.content.passes.empty() || options.content.panorama || options.content.transparent)
+    throw FieldError("--sheet", "cannot be combined with --passes, --panorama or --transparent");
+  write_picture(sheet_of_views(renderer, scene, view, cells_of(options.sheet), &lighting, progress_bar(), how),
+                options.out, sources);
+  return {};
+}
+
 void render(const Rendering& options) {
+  if (options.film.given()) {
+    if (!options.cameras.empty()) throw FieldError("--cameras", "cannot be combined with --path");
+    for (const auto& [given, name] : {std::pair(options.plan, "--plan"),
+                                      {options.audit, "--audit"},
+                                      {options.json, "--json"},
+                                      {options.time > 0, "--time"},
+                                      {options.at.has_value(), "--at"},
+                                      {!options.sheet.empty(), "--sheet"}})
+      if (given) throw FieldError(name, "cannot be combined with --path");
+    LoadedScene opened = load_scenes(options.folders, options.reading, progress_bar());
+    options.view.protect_files(opened.sources);
+    options.view.set_background(opened.scene);
+    return options.film.render(std::move(opened), options.view, options.content, options.out);
+  }
+  options.film.check_unused();
   if (!options.cameras.empty()) return render_photographs(options);
   if (!options.world.empty()) throw FieldError("--world", "applies to --cameras only");
   if (options.camera_format != "auto") throw FieldError("--camera-format", "applies to --cameras only");
   if (options.out.empty() && !options.plan && !options.audit && options.time == 0)
     throw FieldError("-o", "is missing: name a picture to write, or use --plan, --audit or --time");
-  if (!options.out.empty()) check_picture_path(options.out, {});
+  const auto [width, height] = options.view.pixels();
+  if (!options.out.empty()) {
+    check_picture_path(options.out, {});
+    check(options.content, options.out, width, height);
+  }
   auto [scene, sources] = load_scenes(options.folders, options.reading, progress_bar());
   options.view.protect_files(sources);
   if (!options.out.empty()) check_picture_path(options.out, sources);
   refuse_replacing_work(options.out);
   options.view.set_background(scene);
+  if (options.at) scene = scene_at(scene, *options.at);
   const View view = options.view.view(scene);
   const RenderOptions how = options.view.render_options();
   const Lighting lighting = lit(scene, progress_bar());
@@ -196,9 +254,9 @@ void render(const Rendering& options) {
   if (!options.out.empty() || options.time > 0) {
     renderer.emplace();
     if (!options.out.empty()) {
-      const Image picture = renderer->render(scene, view, how, &lighting);
-      write_picture(picture, options.out, sources);
-      if (const auto why = blank_reason(scene, view, picture)) write_stderr(fmt::format("note: {}\n", *why));
+      const Image picture = render_picture(options, *renderer, scene, view, lighting, sources);
+      if (const auto why = picture.rgb.empty() ? std::nullopt : blank_reason(scene, view, picture))
+        write_stderr(fmt::format("note: {}\n", *why));
     }
     if (options.time > 0) {
       const json times = measure(*renderer, scene, view, how, lighting, options.time);
@@ -238,6 +296,17 @@ void describe_render(SubcommandDescription& command) {
       .one_of(Codec<CameraFormatName>::type().choices);
   command.option("--world", options->world, "with --cameras: axis that points up in the file", "y_up|z_up [by format]")
       .one_of(Codec<WorldUp>::type().choices);
+  command.flag("--transparent", options->content.transparent, "no background, but alpha; not for JPEG and MP4");
+  command.flag("--panorama", options->content.panorama,
+               "all directions in an equirectangular picture, twice as wide as high");
+  command.option("--passes", options->content.passes,
+                 "channels of an OpenEXR picture, of color, alpha, depth, normal, node, position and light", "NAME...");
+  command.flag("--separate", options->content.separate, "with --passes: a file for each, such as picture.depth.exr");
+  command.option("--sheet", options->sheet, "contact sheet of all stored views; --size is that of each picture",
+                 "COLUMNSxROWS");
+  command.option("--at", options->at, "the scene as its keyframes move it at this time; default: as it stands",
+                 "seconds");
+  options->film.add_to(command);
   command.flag("--plan", options->plan, "print which passes run or are omitted, and why");
   command.flag("--audit", options->audit,
                "also render with all omitted effects, and fail if the picture differs by more than the bounds "

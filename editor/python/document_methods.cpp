@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "editor/actions/export_action.h"
+#include "editor/actions/film_action.h"
 #include "editor/actions/lit.h"
 #include "editor/actions/publish_action.h"
+#include "editor/actions/render_action.h"
 #include "editor/actions/save.h"
 #include "editor/actions/views.h"
 #include "editor/document/replaced_work.h"
@@ -112,11 +114,12 @@ std::vector<std::string> export_with(PyDocument& document, const py::dict& field
   return notes;
 }
 
-std::vector<std::string> publish_with(PyDocument& document, const py::dict& fields) {
+// Runs the action T with these fields and returns its messages.
+template <class T>
+std::vector<std::string> written_with(PyDocument& document, const py::dict& fields) {
   const json line = to_json(fields);
   std::vector<std::string> notes;
-  document.work(
-      [&](Session& session) { notes = notes_of(session, read_action<PublishAction>(line, session.scene())); });
+  document.work([&](Session& session) { notes = notes_of(session, read_action<T>(line, session.scene())); });
   return notes;
 }
 
@@ -162,7 +165,9 @@ void add_history_methods(py::class_<PyDocument>& type) {
 void add_edit_methods(py::class_<PyDocument>& type) {
   type.def("_edit", &edit_with);
   type.def("_export", &export_with);
-  type.def("_publish", &publish_with);
+  type.def("_publish", &written_with<PublishAction>);
+  type.def("_write_picture", &written_with<RenderAction>);
+  type.def("_film", &written_with<FilmAction>);
   py::dict scope;
   scope["__builtins__"] = py::module_::import("builtins");
   scope["__name__"] = "rebake";

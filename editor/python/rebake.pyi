@@ -133,6 +133,44 @@ class Document:
         views: names of stored views that the page offers; default: all
         single_file: one file that works without a server and makes no request
         """
+    def write_picture(self, out: str | PathLike[str], view: str = "", camera: Camera | None = None, width: int = 800, height: int = 800, samples: int = 4, transparent: bool = False, panorama: bool = False, passes: Sequence[str] | None = None, separate: bool = False, time: float | None = None, sheet: Sequence[int] | None = None, nodes: Sequence[Node] | None = None) -> list[str]:
+        """Renders the scene to a picture file; returns notes.
+
+        out: file to write: .png or .webp without loss, .jpg, or .exr (linear light)
+        view: name of a stored view; default: the camera, or one that frames the scene
+        camera: the camera
+        width: size of the picture (pixels)
+        height: size of the picture (pixels)
+        samples: samples per pixel: 1, 4 or 16
+        transparent: no background, but alpha; not for JPEG
+        panorama: all directions in an equirectangular picture, twice as wide as high
+        passes: channels of an OpenEXR picture, of color, alpha, depth, normal, node, position and light
+        separate: with passes: a file for each, such as picture.depth.exr
+        time: seconds: the scene as its keyframes move it; default: as it stands
+        sheet: columns and rows of a contact sheet of all stored views, width and height of each picture
+        nodes: only these nodes and their children; default: all
+        """
+    def film(self, out: str | PathLike[str], path: str = "keys", view: str = "", camera: Camera | None = None, fps: float | None = None, seconds: float | None = None, loop: bool = False, width: int = 800, height: int = 800, samples: int = 4, transparent: bool = False, panorama: bool = False, passes: Sequence[str] | None = None, separate: bool = False, codec: str = "", picture: str = "png", nodes: Sequence[Node] | None = None) -> list[str]:
+        """Renders a film of the scene, which moves by its keyframes; returns notes.
+
+        out: folder for numbered pictures, or a video .mp4 or .webm, which the program ffmpeg encodes
+        path: way of the camera: keys (its keyframes), views (through all stored views), turntable, or a camera file (camera_path.json of nerfstudio, camera path of instant-ngp, transforms.json, COLMAP)
+        view: where the camera starts or stands without keyframes: name of a stored view; default: the camera, or one that frames the scene
+        camera: where the camera starts or stands without keyframes
+        fps: pictures per second; default: as the camera file states, or 25
+        seconds: length; default: up to the last keyframe, 2 s from view to view, 8 s around, 1 s per camera of a file
+        loop: end where the film begins, without showing that picture twice
+        width: size of the pictures (pixels)
+        height: size of the pictures (pixels)
+        samples: samples per pixel: 1, 4 or 16
+        transparent: no background, but alpha; not for JPEG
+        panorama: all directions in an equirectangular picture, twice as wide as high
+        passes: channels of an OpenEXR picture, of color, alpha, depth, normal, node, position and light
+        separate: with passes: a file for each, such as picture.depth.exr
+        codec: encoder of ffmpeg; default: libx264 for MP4, libvpx-vp9 for WebM
+        picture: format of the pictures in a folder: png, exr, webp or jpg
+        nodes: only these nodes and their children; default: all
+        """
     def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", half_direction: bool | None = None, direction_first: bool | None = None, bgr: bool | None = None, alpha: Literal["halved", "plain"] | None = None, no_holes: bool | None = None, linear: int | None = None, ground: bool = False, content: str = "") -> None:
         """Reads a scene or a textured mesh into the scene.
 

@@ -5,7 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/actions/export_action.h"
+#include "editor/actions/film_action.h"
 #include "editor/actions/publish_action.h"
+#include "editor/actions/render_action.h"
 #include "editor/edits/edit.h"
 #include "editor/fields/field_info.h"
 
@@ -200,20 +202,35 @@ Method export_method() {
   return method;
 }
 
-Method publish_method() {
-  Method method{
-      "publish",
-      "Publishes the scene as a web page; returns notes: its size, and the parts that it carries or leaves out.",
-      "list[str]", action_type<PublishAction>().fields(), true};
+// A method that runs the action T. Its output is named `out`.
+template <class T>
+Method action_method(const char* name, const char* help) {
+  Method method{name, help, "list[str]", action_type<T>().fields(), true};
   for (FieldInfo& field : method.fields)
     if (field.name == "out") field.type.python = "str | PathLike[str]";
   return method;
 }
 
+// Methods that write files, with the functions that they call.
+std::vector<std::pair<Method, std::string>> writing_methods() {
+  return {
+      {export_method(), "_export"},
+      {action_method<PublishAction>(
+           "publish",
+           "Publishes the scene as a web page; returns notes: its size, and the parts that it carries or "
+           "leaves out."),
+       "_publish"},
+      {action_method<RenderAction>("write_picture", "Renders the scene to a picture file; returns notes."),
+       "_write_picture"},
+      {action_method<FilmAction>("film", "Renders a film of the scene, which moves by its keyframes; returns notes."),
+       "_film"}};
+}
+
 }  // namespace
 
 std::string python_stub() {
-  std::string out = head + python_source(export_method()) + python_source(publish_method());
+  std::string out = head;
+  for (const auto& [method, call] : writing_methods()) out += python_source(method);
   for (const EditType* type : edit_types()) out += python_source(method_of(*type));
   return out;
 }
@@ -226,13 +243,14 @@ std::string python_methods() {
     out += python_source(method, "**unknown") +
            fmt::format("        return self._edit(\"{}\", {{{}**unknown}})\n", type->op, arguments_of(method));
   }
-  for (const auto& [method, call] : {std::pair(export_method(), "_export"), {publish_method(), "_publish"}})
+  for (const auto& [method, call] : writing_methods())
     out += python_source(method) + fmt::format("        return self.{}({{{}}})\n", call, arguments_of(method));
   return out;
 }
 
 std::vector<std::string> python_method_names() {
-  std::vector<std::string> names{"export", "publish"};
+  std::vector<std::string> names;
+  for (const auto& [method, call] : writing_methods()) names.push_back(method.name);
   for (const EditType* type : edit_types()) names.push_back(python_name(type->op));
   return names;
 }

@@ -6,11 +6,11 @@
 
 namespace rebake {
 
-/// The type stub of the Python module, rebake.pyi: a fixed part, export(), publish(), and a method per edit, with
-/// fields, types and defaults.
+/// The type stub of the Python module, rebake.pyi: a fixed part, the methods that write files, and a method per edit,
+/// with fields, types and defaults.
 std::string python_stub();
 
-/// Python source of a class Methods: export() and publish(), which call self._export(fields) and self._publish(fields),
+/// Python source of a class Methods: those that write files, such as export(), which calls self._export(fields),
 /// and a method per edit, which calls self._edit(op, fields).
 std::string python_methods();
 /// The names of these methods.

@@ -136,6 +136,17 @@ class Module(unittest.TestCase):
         with self.assertRaisesRegex(rebake.Error, "must end in .html"):
             self.document.publish(self.at / "page", single_file=True)
 
+    def test_films_and_pictures_with_passes(self):
+        self.document.key(time=0, node="ficus", interpolation="linear")
+        self.document.key(time=1, node="ficus", position=[0, 1, 0])
+        notes = self.document.film(self.at / "film", fps=4, width=32, height=24)
+        self.assertIn("wrote 5 pictures", notes[-1])
+        self.assertEqual(len(list((self.at / "film").glob("*.png"))), 5)
+        self.document.write_picture(self.at / "p.exr", passes=["depth", "node"], width=32, height=24)
+        self.assertTrue((self.at / "p.exr").is_file())
+        with self.assertRaisesRegex(rebake.FieldError, "known: color"):
+            self.document.write_picture(self.at / "q.exr", passes=["dept"])
+
     def test_history_journal_and_project(self):
         self.document.keep_journal(self.at / "j")
         self.document.transform(node="ficus", translate=[0, 1, 0])

@@ -16,6 +16,7 @@
 #include "editor/edits/nodes/light.h"
 #include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
+#include "editor/film/film_frames.h"
 #include "editor/gui/panels/file_dialog_purpose.h"
 #include "editor/gui/state/navigation.h"
 #include "editor/gui/ui/announce.h"
@@ -141,7 +142,8 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       std::vector<Camera> views;
       for (const std::string& name : view_names(editor.scene())) views.push_back(editor.scene().views.at(name));
       if (views.size() < 2) throw Error("a camera path needs at least two stored views; store another view first");
-      editor.jobs.film.emplace(path, width_, height_, camera_path(views, pictures_), editor.now->sources);
+      editor.jobs.film.emplace(path, width_, height_, cameras_through(views, static_cast<std::size_t>(pictures_)),
+                               editor.now->sources);
       break;
     }
     case FileDialogPurpose::save_script:

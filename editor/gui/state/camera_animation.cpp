@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "editor/film/video.h"
 #include "editor/gui/state/settings.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -19,9 +20,7 @@ CameraAnimation::CameraAnimation(fs::path out, int width, int height, std::vecto
     pictures_ = out_;
   } else {
     sources.check_file(out_);
-    if (program_path("ffmpeg").empty())
-      throw Error(
-          "a video needs the program ffmpeg, which is not installed; install it, or name a folder for pictures");
+    check_can_encode(out_, false);
     pictures_ = cache_folder() / fmt::format("film-{}", ::getpid());
     std::error_code nothing;
     fs::remove_all(pictures_, nothing);  // left by an editor with the same process id that was killed
@@ -52,9 +51,7 @@ std::string CameraAnimation::run_step(const std::function<void(const Camera&, co
     if (++next_ < cameras_.size()) return "";
     if (!video()) return fmt::format("Wrote {} pictures to {}", cameras_.size(), out_.string());
     encoder_ = std::make_unique<ChildProcess>(
-        std::vector<std::string>{program_path("ffmpeg"), "-nostdin", "-loglevel", "error", "-y", "-framerate",
-                                 std::to_string(rate), "-i", (pictures_ / "%03d.png").string(), "-frames:v",
-                                 std::to_string(cameras_.size()), "-pix_fmt", "yuv420p", partial.string()});
+        encoder_command({pictures_ / "%03d.png", cameras_.size(), rate, "", false, partial}));
     return "";
   }
   const std::optional<int> status = encoder_->ended();

@@ -154,44 +154,6 @@ std::vector<Camera> turntable(const Camera& camera, int count) {
   return cameras;
 }
 
-std::vector<Camera> camera_path(const std::vector<Camera>& through, int count) {
-  std::vector<Camera> cameras;
-  const auto last = static_cast<int>(through.size()) - 1;
-  for (int k = 0; k < count; ++k) {
-    const double at = count > 1 ? static_cast<double>(k) * last / (count - 1) : 0;
-    const int from = std::min(static_cast<int>(at), std::max(0, last - 1));
-    const double t = at - from;
-    // Catmull-Rom spline; the end points are repeated.
-    const double weights[] = {(-t + 2 * t * t - t * t * t) / 2, (2 - 5 * t * t + 3 * t * t * t) / 2,
-                              (t + 4 * t * t - 3 * t * t * t) / 2, (-t * t + t * t * t) / 2};
-    Camera camera = through[static_cast<std::size_t>(std::lround(at))];
-    Vec3 target(0, 0, 0), direction(0, 0, 0), up(0, 0, 0);
-    double distance = 0, fov = 0, height = 0;
-    bool parallel = true;
-    for (int i = 0; i < 4; ++i) {
-      const Camera& one = through[static_cast<std::size_t>(std::clamp(from - 1 + i, 0, last))];
-      const Vec3 to_eye = one.eye - one.target;
-      target += weights[i] * one.target;
-      direction += weights[i] * to_eye.normalized();
-      up += weights[i] * one.up.normalized();
-      distance += weights[i] * std::log(to_eye.norm());
-      fov += weights[i] * one.fov_degrees;
-      parallel = parallel && one.orthographic();
-      if (one.orthographic()) height += weights[i] * std::log(one.ortho_height);
-    }
-    // Between opposite directions no interpolation is defined: the nearest given camera is used.
-    if (direction.norm() > 1e-6) {
-      camera.target = target;
-      camera.eye = target + std::exp(distance) * direction.normalized();
-      if (up.norm() > 1e-6) camera.up = up.normalized();
-      camera.fov_degrees = std::clamp(fov, 1.0, 170.0);
-      if (parallel) camera.ortho_height = std::exp(height);
-    }
-    cameras.push_back(camera);
-  }
-  return cameras;
-}
-
 Camera with_clip_planes_for(const Camera& camera, const Box& box) {
   Camera result = camera;
   if (camera.orthographic() && !box.isEmpty()) {

@@ -30,9 +30,6 @@ Camera looked_around(const Camera& camera, double right_pixels, double down_pixe
 Camera along_axis(const Camera& camera, const Vec3& axis);
 /// Toggles between perspective and orthographic projection; objects at the target keep their size in the picture.
 Camera toggled_projection(const Camera& camera);
-/// `count` cameras on a Catmull-Rom spline through the given ones (at least one), from the first to the last. Targets,
-/// directions to the eye, logarithms of distances, and fields of view are interpolated.
-std::vector<Camera> camera_path(const std::vector<Camera>& through, int count);
 /// `count` cameras that orbit once around the target.
 std::vector<Camera> turntable(const Camera& camera, int count);
 /// Sets near and far planes that enclose the box. Moves an orthographic camera along its view direction to a place in

@@ -104,6 +104,13 @@ std::vector<PhotoCamera> read_nerfstudio_path(const std::filesystem::path& file,
   });
 }
 
+std::optional<double> nerfstudio_path_rate(const std::filesystem::path& file) {
+  const json object = read_json_object(file);
+  const auto rate = object.find("fps");
+  if (rate == object.end() || !rate->is_number() || !(rate->get<double>() > 0)) return std::nullopt;
+  return rate->get<double>();
+}
+
 std::string nerfstudio_path_text(const std::vector<PhotoCamera>& cameras) {
   constexpr double frames_per_second = 24;
   json file = {{"camera_type", "perspective"},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@ namespace rebake {
 /// Reads nerfstudio's camera_path.json: per frame the 16 numbers of a camera-to-world matrix row by row (columns right,
 /// up, back), the vertical field of view in degrees and the aspect. Throws FileError.
 std::vector<PhotoCamera> read_nerfstudio_path(const std::filesystem::path& file, std::vector<std::string>& notes);
+/// The pictures per second that such a file states; nothing if it states none.
+std::optional<double> nerfstudio_path_rate(const std::filesystem::path& file);
 /// The text of such a file: 24 frames per second.
 std::string nerfstudio_path_text(const std::vector<PhotoCamera>& cameras);
 

@@ -53,27 +53,6 @@ TEST(Navigation, FramesTheDenseCentreOfAScene) {
   EXPECT_NEAR(both.target.x(), 3, 1e-6);
 }
 
-TEST(Navigation, CameraPathPassesViewsOnArcs) {
-  Camera other = camera();
-  other.eye = camera().target + Eigen::AngleAxisd(1.2, Vec3::UnitY()) * (camera().eye - camera().target);
-  Camera third = orbited(other, 100, 30, height);
-  third.fov_degrees = 60;
-  const std::vector<Camera> path = camera_path({camera(), other, third}, 21);
-  ASSERT_EQ(path.size(), 21U);
-  EXPECT_LT((path[0].eye - camera().eye).norm(), 1e-12);
-  EXPECT_LT((path[10].eye - other.eye).norm(), 1e-12);
-  EXPECT_LT((path[20].eye - third.eye).norm(), 1e-12);
-  EXPECT_NEAR(path[20].fov_degrees, 60, 1e-9);
-  const double distance = (camera().eye - camera().target).norm();
-  double longest = 0;
-  for (std::size_t k = 0; k < 11; ++k) {
-    EXPECT_NEAR((path[k].eye - path[k].target).norm(), distance, 1e-9) << "the path must keep the orbit distance";
-    longest = std::max(longest, (path[k + 1].eye - path[k].eye).norm());
-  }
-  EXPECT_LT(longest, 0.3 * distance) << "no jumps";
-  EXPECT_LT((camera_path({camera()}, 3).back().eye - camera().eye).norm(), 1e-12);
-}
-
 TEST(Navigation, FullOrbitReturns) {
   Camera moved = camera();
   for (int k = 0; k < 8; ++k) moved = orbited(moved, 2.0 * height / 8, 0, height);

@@ -1,0 +1,62 @@
+#include "editor/actions/picture_output.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "editor/actions/views.h"
+#include "editor/edits/stored_view.h"
+#include "mesh_ops/base/error.h"
+#include "render/contact_sheet.h"
+#include "render/panorama.h"
+
+namespace rebake {
+
+void check(const PictureContent& content, const std::filesystem::path& out, int width, int height) {
+  check_pass_names(content.passes);
+  if (!content.passes.empty() && out.extension() != ".exr")
+    throw FieldError("passes", "are written to OpenEXR pictures; name a file that ends in .exr");
+  if (!content.passes.empty() && content.panorama) throw FieldError("passes", "cannot be combined with panorama");
+  if (content.separate && content.passes.empty()) throw FieldError("separate", "applies to passes only");
+  if (content.transparent && !content.passes.empty())
+    throw FieldError("transparent", "cannot be combined with passes; choose the passes color and alpha");
+  if (content.transparent && !holds_alpha(out)) throw FieldError("transparent", "JPEG has no alpha; choose png");
+  if (content.panorama && width != 2 * height) throw FieldError("width", "of a panorama must be twice its height");
+}
+
+Image render_to_file(Renderer& renderer, const Scene& scene, const View& view, RenderOptions options,
+                     const Lighting* lighting, const PictureContent& content, const std::filesystem::path& out,
+                     const SourceGuard& sources) {
+  options.transparent = content.transparent;
+  if (!content.passes.empty()) {
+    write_passes(render_passes(renderer, scene, view, options, lighting, content.passes), out, content.separate,
+                 sources);
+    return {};
+  }
+  Image picture = content.panorama ? render_panorama(renderer, scene, view, options, lighting)
+                                   : renderer.render(scene, view, options, lighting);
+  write_picture(picture, out, sources);
+  return picture;
+}
+
+Image sheet_of_views(Renderer& renderer, const Scene& scene, const View& view, const PixelSize& cells,
+                     const Lighting* lighting, const Progress& progress, const RenderOptions& options) {
+  const std::vector<std::string> names = view_names(scene);
+  if (names.empty()) throw FieldError("sheet", "the scene has no stored views; store some with the edit view");
+  const std::size_t room = static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height);
+  if (names.size() > room)
+    throw FieldError("sheet",
+                     fmt::format("has room for {} pictures, but the scene has {} stored views", room, names.size()));
+  std::vector<Image> pictures;
+  for (const std::string& name : names) {
+    progress.at("rendering " + name, static_cast<double>(pictures.size()) / static_cast<double>(names.size()));
+    View one = view;
+    one.camera = fitted(scene, scene.views.at(name), static_cast<double>(view.width) / view.height);
+    pictures.push_back(renderer.render(scene, one, options, lighting));
+  }
+  const auto byte = [](double channel) { return static_cast<std::uint8_t>(std::lround(255 * channel)); };
+  const Color& b = scene.background;
+  return contact_sheet(pictures, cells.width, std::max(1, view.width / 100), {byte(b.x()), byte(b.y()), byte(b.z())});
+}
+
+}  // namespace rebake

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "mesh_ops/base/progress.h"
+#include "mesh_ops/base/source_guard.h"
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+/// Hash of everything in a scene that pictures depend on: nodes, triangles, texels, decoders, keyframes, background and
+/// light.
+std::uint64_t picture_hash(const Scene& scene, const Progress& progress = {});
+
+/// A folder of numbered pictures (00000.png, …) with a file film.json that says what they show, so that a film that was
+/// interrupted goes on.
+class PictureFolder {
+ public:
+  /// Opens or creates the folder. `content`: text that identifies the film; pictures of another one are removed.
+  /// Throws FileError if the folder has files that are not those of a film.
+  PictureFolder(std::filesystem::path folder, std::string extension, const std::string& content,
+                const SourceGuard& sources);
+
+  std::filesystem::path picture(std::size_t number) const;
+  /// The name pattern of the pictures in printf notation.
+  std::filesystem::path pattern() const;
+  /// Whether a picture of this film exists already.
+  bool has(std::size_t number) const;
+  std::size_t removed() const { return removed_; }  ///< number of pictures of another film that were removed
+
+ private:
+  std::filesystem::path folder_;
+  std::string extension_;
+  std::size_t removed_ = 0;
+};
+
+}  // namespace rebake

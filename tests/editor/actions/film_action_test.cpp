@@ -1,0 +1,105 @@
+// Films: resumed, replaced and refused.
+#include "editor/actions/film_action.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "mesh_ops/base/files.h"
+#include "render/image.h"
+#include "tests/support/made_scenes.h"
+#include "tests/support/script_fixture.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class FilmActionTest : public Script {
+ protected:
+  FilmActionTest() {
+    session.say = [&](const std::string& line) { said_ += line + "\n"; };
+    run(import + R"({"op": "key", "node": "ball", "time": 0, "interpolation": "linear"}
+{"op": "key", "node": "ball", "time": 1, "position": [1, 0, 0]})");
+  }
+  ~FilmActionTest() override { ::setenv("PATH", path_.c_str(), 1); }
+
+  fs::path at(const std::string& name) const { return folder_.path() / name; }
+  std::string film(const std::string& more) const {
+    return fmt::format(R"({{"op": "film", "width": 40, "height": 30, "fps": 4, {}}})", more);
+  }
+  // Puts a stand-in for ffmpeg before all other programs.
+  void encoder(const std::string& script) const {
+    fs::create_directories(at("bin"));
+    write_text(at("bin/ffmpeg"), "#!/bin/sh\n" + script + "\n");
+    fs::permissions(at("bin/ffmpeg"), fs::perms::owner_all);
+    ::setenv("PATH", (at("bin").string() + ":" + path_).c_str(), 1);
+  }
+  std::string said() { return std::exchange(said_, ""); }
+
+ private:
+  std::string said_, path_ = std::getenv("PATH");
+};
+
+TEST_F(FilmActionTest, GoesOnAfterAnInterruptionWithTheSamePictures) {
+  run(film(R"("out": "{here}/film")"));
+  const auto all = folder_bytes(at("film"));
+  ASSERT_EQ(all.size(), 6U);  // 5 pictures and film.json
+  EXPECT_NE(all.at("00000.png"), all.at("00004.png"));
+  fs::remove(at("film/00002.png"));
+  fs::remove(at("film/00004.png"));
+  said();
+  run(film(R"("out": "{here}/film")"));
+  EXPECT_EQ(folder_bytes(at("film")), all);
+  EXPECT_NE(said().find("3 of 5 pictures exist already"), std::string::npos);
+  // After an edit all pictures are new.
+  run(R"({"op": "transform", "node": "ball", "scale": 0.5})"
+      "\n"
+      R"({"op": "key", "node": "ball", "time": 1, "position": [0, 1, 0]})");
+  run(film(R"("out": "{here}/film")"));
+  EXPECT_NE(said().find("5 pictures of an earlier film"), std::string::npos);
+  EXPECT_NE(folder_bytes(at("film")).at("00004.png"), all.at("00004.png"));
+}
+
+TEST_F(FilmActionTest, NeverReplacesOtherFiles) {
+  fs::create_directories(at("mine"));
+  write_text(at("mine/00000.png"), "a picture of mine");
+  expect_error(film(R"("out": "{here}/mine")"), "is not a film's folder");
+  EXPECT_EQ(read_file(at("mine/00000.png")), "a picture of mine");
+  run(film(R"("out": "{here}/film")"));
+  write_text(at("film/notes.txt"), "mine");
+  expect_error(film(R"("out": "{here}/film")"), "contains \"notes.txt\"");
+  encoder("exit 0");
+  write_text(at("a.mp4"), "a file of mine");
+  expect_error(film(R"("out": "{here}/a.mp4")"), "is not a video");
+  expect_error(film(R"("out": "{here}/ball/x.mp4")"), "ball");
+}
+
+TEST_F(FilmActionTest, KeepsThePicturesIfTheEncoderFails) {
+  encoder("exit 7");
+  expect_error(film(R"("out": "{here}/a.mp4")"), "ffmpeg failed with exit status 7");
+  EXPECT_FALSE(fs::exists(at("a.mp4")));
+  EXPECT_TRUE(fs::exists(at("a.mp4.pictures/00004.png")));
+  encoder(R"(for last; do :; done; printf '\0\0\0\0ftypfilm' > "$last")");
+  said();
+  run(film(R"("out": "{here}/a.mp4")"));
+  EXPECT_NE(said().find("5 of 5 pictures exist already"), std::string::npos);
+  EXPECT_EQ(read_file(at("a.mp4")).substr(4), "ftypfilm");
+  EXPECT_FALSE(fs::exists(at("a.mp4.pictures")));
+}
+
+TEST_F(FilmActionTest, SaysWhatIsMissingOrDoesNotFit) {
+  ::setenv("PATH", at("empty").c_str(), 1);
+  expect_error(film(R"("out": "{here}/a.mp4")"), "needs the program ffmpeg");
+  encoder("exit 0");
+  expect_error(film(R"("out": "{here}/a.mp4", "transparent": true)"), "MP4 has no alpha");
+  expect_error(film(R"("out": "{here}/a.mov")"), "written as .mp4 and .webm");
+  expect_error(film(R"("out": "{here}/f", "panorama": true)"), "twice its height");
+  expect_error(film(R"("out": "{here}/f", "passes": ["depth"])"), "set picture to exr");
+  expect_error(film(R"("out": "{here}/f", "picture": "exr", "passes": ["dept"])"), "known: color, alpha");
+  EXPECT_FALSE(fs::exists(at("f")));
+}
+
+}  // namespace
+}  // namespace rebake::test
