@@ -11,6 +11,7 @@
 #include "mesh_ops/features/atlas/atlas.h"
 #include "mesh_ops/features/distill/mean_colors.h"
 #include "mesh_ops/formats/images/png_writer.h"
+#include "mesh_ops/formats/motion_samples.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/opacity.h"
 
@@ -47,6 +48,7 @@ class GltfDocument {
     if (visible_.empty()) throw EditError("there is nothing to export: no visible node has triangles");
     const Box box = world_bounds(scene);
     size_ = box.isEmpty() ? 0 : box.diagonal().norm();
+    bounds_ = box;
     rays_.emplace(rays_through(visible_));
     for (const char* list : {"nodes", "meshes", "materials", "textures", "images", "accessors", "bufferViews"})
       root_[list] = json::array();
@@ -54,12 +56,18 @@ class GltfDocument {
     for (const NodePtr& node : scene.roots)
       if (node->visible) roots.push_back(add_node(*node));
     for (const auto& [name, camera] : scene.views) roots.push_back(add_camera(name, camera));
+    if (!scene.camera_keys.empty()) {
+      roots.push_back(add_camera("film camera", value_at(scene.camera_keys, scene.camera_keys.front().seconds)));
+      animate(roots.back(), camera_samples(scene.camera_keys), false);
+    }
     root_["scenes"] = {{{"nodes", roots}}};
     root_["scene"] = 0;
     root_["asset"] = {{"version", "2.0"}, {"generator", generator}};
     root_["extensionsUsed"] = {"KHR_materials_unlit"};
     root_["samplers"] = json::array(
         {{{"magFilter", nearest}, {"minFilter", nearest}, {"wrapS", clamp_to_edge}, {"wrapT", clamp_to_edge}}});
+    if (!channels_.empty())
+      root_["animations"] = json::array({{{"name", "keyframes"}, {"channels", channels_}, {"samplers", samplers_}}});
     root_["buffers"] = json::array({{{"byteLength", bytes_.size()}}});
   }
 
@@ -98,14 +106,62 @@ class GltfDocument {
 
   std::size_t add_node(const Node& node) {
     json made = {{"name", node.name}};
-    if (!node.to_parent.matrix().isIdentity(0)) made["matrix"] = column_major(node.to_parent.matrix());
+    const bool moves = node.motion && !node.motion->place.empty();
+    if (!moves && !node.to_parent.matrix().isIdentity(0)) made["matrix"] = column_major(node.to_parent.matrix());
     json children = json::array();
     if (node.object)
       for (std::size_t child : add_object(node)) children.push_back(child);
     for (const NodePtr& child : node.children)
       if (child->visible) children.push_back(add_node(*child));
     if (!children.empty()) made["children"] = children;
-    return add_to("nodes", made);
+    const std::size_t number = add_to("nodes", made);
+    if (moves) {
+      const PlaceSamples samples = place_samples(node.motion->place);
+      animate(number, samples, true);
+      if (samples.sheared)
+        notes_.push_back(fmt::format("\"{}\" has keyframes with a shear, which glTF cannot animate", node.name));
+    }
+    return number;
+  }
+
+  std::size_t add_floats(const std::vector<float>& values, std::size_t count, const char* shape) {
+    const std::size_t view = add_view(values.data(), values.size() * sizeof(float), 0);
+    return add_to("accessors",
+                  {{"bufferView", view}, {"componentType", float_type}, {"count", count}, {"type", shape}});
+  }
+  // An accessor of increasing times, with their range.
+  std::size_t add_times(const std::vector<double>& seconds) {
+    const std::vector<float> times(seconds.begin(), seconds.end());
+    const std::size_t accessor = add_floats(times, times.size(), "SCALAR");
+    root_["accessors"][accessor]["min"] = {times.front()};
+    root_["accessors"][accessor]["max"] = {times.back()};
+    return accessor;
+  }
+  void add_channel(std::size_t node, const char* path, std::size_t times, std::size_t values, bool step) {
+    channels_.push_back({{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", path}}}});
+    samplers_.push_back({{"input", times}, {"output", values}, {"interpolation", step ? "STEP" : "LINEAR"}});
+  }
+
+  // Animated nodes have a translation, rotation and scale in place of a matrix.
+  void animate(std::size_t node, const PlaceSamples& samples, bool scales) {
+    const std::size_t count = samples.seconds.size(), times = add_times(samples.seconds);
+    std::vector<float> translations, rotations, factors;
+    for (std::size_t k = 0; k < count; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        translations.push_back(static_cast<float>(samples.translations[k][axis]));
+        factors.push_back(static_cast<float>(samples.scales[k][axis]));
+      }
+      for (int part = 0; part < 4; ++part) rotations.push_back(static_cast<float>(samples.rotations[k].coeffs()[part]));
+    }
+    json& made = root_["nodes"][node];
+    made.erase("matrix");
+    made["translation"] = {translations[0], translations[1], translations[2]};
+    made["rotation"] = {rotations[0], rotations[1], rotations[2], rotations[3]};
+    add_channel(node, "translation", times, add_floats(translations, count, "VEC3"), samples.step);
+    add_channel(node, "rotation", times, add_floats(rotations, count, "VEC4"), samples.step);
+    if (!scales) return;
+    made["scale"] = {factors[0], factors[1], factors[2]};
+    add_channel(node, "scale", times, add_floats(factors, count, "VEC3"), samples.step);
   }
 
   // A node per texture set, whose positions are relative to its centre, so that they fit into floats.
@@ -114,7 +170,14 @@ class GltfDocument {
         std::find_if(visible_.begin(), visible_.end(), [&](const PlacedNode& one) { return one.node->id == node.id; });
     MeanColorLoss loss;
     std::vector<std::size_t> nodes;
-    for (const TextureSet& set : packed(*node.object)) {
+    std::optional<BendPoses> bends;
+    if (node.motion && !node.motion->bends.empty()) bends = bend_poses(node);
+    std::vector<std::vector<TextureSet>> poses;
+    if (bends)
+      for (const auto& pose : bends->poses) poses.push_back(packed(*pose));
+    const std::vector<TextureSet> sets = packed(bends ? *bends->rest : *node.object);
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      const TextureSet& set = sets[s];
       progress_.at("averaging colours of " + node.name,
                    static_cast<double>(nodes.size()) / static_cast<double>(node.object->sets.size()));
       if (set.soup.triangle_count() == 0) continue;
@@ -126,7 +189,13 @@ class GltfDocument {
       json part = {{"name", node.name + " triangles"}, {"mesh", mesh}};
       if (!centre.isZero(0)) part["translation"] = {centre.x(), centre.y(), centre.z()};
       nodes.push_back(add_to("nodes", part));
+      if (bends) add_poses(nodes.back(), mesh, set, s, poses, bends->seconds);
     }
+    if (bends)
+      notes_.push_back(
+          fmt::format("the bends of \"{}\" are {} poses; between them its vertices are at most {:.2g} of its "
+                      "size from their places",
+                      node.name, bends->poses.size(), bends->deviation / bends->rest->bounds().diagonal().norm()));
     notes_.push_back(
         fmt::format("\"{}\" loses its view dependence: {:.1f} dB PSNR between its colours and their means, over "
                     "{} directions where they are visible",
@@ -136,6 +205,33 @@ class GltfDocument {
           fmt::format("{} triangles of \"{}\" are visible from no direction: their colours are means over all",
                       loss.hidden, node.name));
     return nodes;
+  }
+
+  // Morph targets of a mesh, of which one after the other gets the weight 1.
+  void add_poses(std::size_t node, std::size_t mesh, const TextureSet& rest, std::size_t number,
+                 const std::vector<std::vector<TextureSet>>& poses, const std::vector<double>& seconds) {
+    json targets = json::array();
+    std::vector<float> weights;
+    for (std::size_t k = 0; k < poses.size(); ++k) {
+      const Soup& soup = poses[k][number].soup;
+      if (soup.faces() != rest.soup.faces() || soup.uvs() != rest.soup.uvs())
+        throw std::logic_error("a pose of a bend is packed in another way than the object");
+      std::vector<float> moves;
+      Eigen::AlignedBox3f box;
+      for (std::size_t v = 0; v < soup.positions().size(); ++v) {
+        const Eigen::Vector3f move = (soup.positions()[v] - rest.soup.positions()[v]).cast<float>();
+        box.extend(move);
+        moves.insert(moves.end(), {move.x(), move.y(), move.z()});
+      }
+      const std::size_t accessor = add_floats(moves, soup.positions().size(), "VEC3");
+      root_["accessors"][accessor]["min"] = {box.min().x(), box.min().y(), box.min().z()};
+      root_["accessors"][accessor]["max"] = {box.max().x(), box.max().y(), box.max().z()};
+      targets.push_back({{"POSITION", accessor}});
+      for (std::size_t other = 0; other < poses.size(); ++other) weights.push_back(other == k ? 1.0F : 0.0F);
+    }
+    root_["meshes"][mesh]["primitives"][0]["targets"] = targets;
+    root_["meshes"][mesh]["weights"] = std::vector<int>(poses.size(), 0);
+    add_channel(node, "weights", add_times(seconds), add_floats(weights, weights.size(), "SCALAR"), false);
   }
 
   // The object's sets without the triangles and texels that nothing shows.
@@ -195,7 +291,9 @@ class GltfDocument {
     return {{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}, {"material", material}};
   }
 
-  std::size_t add_camera(const std::string& name, const Camera& camera) {
+  std::size_t add_camera(const std::string& name, const Camera& stored) {
+    // Absent planes are fitted to the scene.
+    const Camera camera = with_planes(stored, bounds_, 1);
     json lens;
     if (camera.orthographic())
       lens = {{"type", "orthographic"},
@@ -223,9 +321,11 @@ class GltfDocument {
   std::vector<PlacedNode> visible_;
   std::optional<SceneRays> rays_;
   double size_ = 0;
+  Box bounds_;
   json root_;
   std::string bytes_;
   std::vector<std::string> notes_;
+  json channels_ = json::array(), samplers_ = json::array();  ///< of the animation
 };
 
 // Whether a file is one that write_gltf() made.

@@ -8,9 +8,9 @@ namespace rebake {
 
 /// Writes a scene as glTF 2.0 (.glb) for modelling programs and game engines: the visible nodes with their names and
 /// transforms, stored views as cameras, and per texture set an unlit material (KHR_materials_unlit) whose base colour
-/// is the mean over the directions from which each triangle is visible (mean_colors()). The report says what this
-/// costs. Replaces only glTF files of this function. Throws EditError for a scene without triangles, FieldError for
-/// options that do not apply, FileError.
+/// is the mean over the directions from which each triangle is visible (mean_colors()). Keyframes become an animation
+/// of nodes and of morph targets (motion_samples.h). The report says what this costs. Replaces only glTF files of this
+/// function. Throws EditError for a scene without triangles, FieldError for options that do not apply, FileError.
 ExportReport write_gltf(const Scene& scene, const std::filesystem::path& file, const ExportOptions& options,
                         const Progress& progress);
 

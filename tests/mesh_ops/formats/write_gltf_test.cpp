@@ -12,7 +12,9 @@
 #include "mesh_ops/features/distill/diffuse_network.h"
 #include "mesh_ops/features/distill/mean_colors.h"
 #include "mesh_ops/formats/meshes/gltf_scene.h"
+#include "mesh_ops/formats/motion_samples.h"
 #include "mesh_ops/index/index.h"
+#include "mesh_ops/motion/scene_at.h"
 #include "tests/support/document_fixture.h"
 
 namespace rebake::test {
@@ -56,10 +58,68 @@ TEST_F(WriteGltf, HasTheTreeNamesAndCamerasOfTheScene) {
   const json& view = nodes[scene[1].get<std::size_t>()];
   EXPECT_EQ(view.at("name"), "front \"one\"");
   EXPECT_EQ(view.at("matrix")[14], 4);
+  EXPECT_GT(root.at("cameras")[0].at("perspective").at("znear").get<double>(), 0);
   EXPECT_NEAR(root.at("cameras")[0].at("perspective").at("yfov").get<double>(), 39 * std::numbers::pi / 180, 1e-12);
   EXPECT_EQ(root.at("extensionsUsed"), json::array({"KHR_materials_unlit"}));
   EXPECT_FALSE(root.contains("extensionsRequired"));
   EXPECT_NE(report_.notes[0].find("loses its view dependence"), std::string::npos) << report_.notes[0];
+}
+
+TEST_F(WriteGltf, KeyframesBecomeAnimations) {
+  act(document_, R"({"op": "key", "node": "ball", "time": 0, "interpolation": "linear"})");
+  act(document_,
+      R"({"op": "key", "node": "ball", "time": 2, "position": [1, 2, 3], "rotation": {"axis": [0, 1, 0], "degrees": 90}})");
+  act(document_, R"({"op": "key", "node": "ball", "time": 0, "degrees": 0})");
+  act(document_, R"({"op": "key", "node": "ball", "time": 1, "degrees": 40})");
+  act(document_, R"({"op": "key", "time": 0, "camera": {"eye": [0, 0, 4], "target": [0, 0, 0]}})");
+  act(document_, R"({"op": "key", "time": 1, "camera": {"eye": [4, 0, 0], "target": [0, 0, 0]}})");
+  const json root = written(path("a.glb"));
+  const json& animation = root.at("animations").at(0);
+  std::map<std::string, std::vector<std::string>> paths;  // by name of the node
+  for (const json& channel : animation.at("channels")) {
+    const json& node = root.at("nodes").at(channel.at("target").at("node").get<std::size_t>());
+    EXPECT_FALSE(node.contains("matrix")) << "animated nodes have no matrix";
+    paths[node.at("name")].push_back(channel.at("target").at("path"));
+    const json& sampler = animation.at("samplers").at(channel.at("sampler").get<std::size_t>());
+    const json& times = root.at("accessors").at(sampler.at("input").get<std::size_t>());
+    const json& values = root.at("accessors").at(sampler.at("output").get<std::size_t>());
+    EXPECT_EQ(times.at("min").at(0), 0);
+    if (channel.at("target").at("path") != "weights") {
+      EXPECT_EQ(values.at("count"), times.at("count"));
+      continue;
+    }
+    const json& mesh = root.at("meshes").at(node.at("mesh").get<std::size_t>());
+    const std::size_t targets = mesh.at("primitives").at(0).at("targets").size();
+    EXPECT_GT(targets, 4U);
+    EXPECT_EQ(mesh.at("weights").size(), targets);
+    EXPECT_EQ(values.at("count").get<std::size_t>(), targets * times.at("count").get<std::size_t>());
+  }
+  EXPECT_EQ(paths.at("ball"), (std::vector<std::string>{"translation", "rotation", "scale"}));
+  EXPECT_EQ(paths.at("film camera"), (std::vector<std::string>{"translation", "rotation"}));
+  EXPECT_EQ(paths.at("ball triangles"), std::vector<std::string>{"weights"});
+}
+
+TEST_F(WriteGltf, PosesOfBendsAreAsCloseAsTheReportSays) {
+  act(document_, R"({"op": "key", "node": "ball", "time": 0, "degrees": -60})");
+  act(document_, R"({"op": "key", "node": "ball", "time": 1, "degrees": 90, "interpolation": "step"})");
+  act(document_, R"({"op": "key", "node": "ball", "time": 2, "degrees": 0})");
+  const Node& ball = *find(document_.scene(), "ball");
+  const BendPoses poses = bend_poses(ball);
+  EXPECT_LE(poses.deviation, poses.rest->bounds().diagonal().norm() / 500);
+  EXPECT_EQ(poses.poses.back()->sets[0].soup.positions(), poses.rest->sets[0].soup.positions());
+  for (double t = 0; t < 0.999; t += 0.037) {
+    std::size_t k = 0;
+    while (poses.seconds[k + 1] <= t) ++k;
+    const double share = (t - poses.seconds[k]) / (poses.seconds[k + 1] - poses.seconds[k]);
+    const auto exact = bent(ball, ball.motion->bends.at("bend"), value_at(ball.motion->bends.at("bend").degrees, t));
+    double largest = 0;
+    for (std::size_t v = 0; v < exact->sets[0].soup.positions().size(); ++v)
+      largest = std::max(largest,
+                         ((1 - share) * poses.poses[k]->sets[0].soup.positions()[v] +
+                          share * poses.poses[k + 1]->sets[0].soup.positions()[v] - exact->sets[0].soup.positions()[v])
+                             .norm());
+    EXPECT_LE(largest, 1.5 * poses.deviation) << t;
+  }
 }
 
 TEST_F(WriteGltf, TrianglesStayInPlaceAndHolesStayHoles) {
