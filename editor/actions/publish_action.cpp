@@ -3,6 +3,7 @@
 #include "editor/actions/describe_action.h"
 #include "editor/actions/lit.h"
 #include "editor/actions/views.h"
+#include "editor/document/project.h"
 #include "editor/document/replaced_work.h"
 #include "editor/edits/stored_view.h"
 
@@ -11,6 +12,8 @@
 #include <filesystem>
 
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/scene_files.h"
 #include "render/web_page/web_page.h"
 
 namespace rebake {
@@ -55,11 +58,37 @@ WebPageOptions options_of(const Scene& scene, const PublishAction& action) {
           ? action.title
           : (action.single_file ? absolute_path(action.out).stem() : absolute_path(action.out).filename()).string();
   options.single_file = action.single_file;
+  options.transparent = action.transparent;
   options.up = scene.ground.normal;
   options.home = resolve_view(scene, action.camera, action.view, 800, 800, 4).camera;
   for (const std::string& name : action.views.empty() ? view_names(scene) : action.views)
     options.views[name] = fitted(scene, stored_view(scene, name, "views"), 1);
   return options;
+}
+
+// A scene or project of this name.
+Scene opened(const fs::path& path, const Progress& progress) {
+  if (is_project_file(path)) return Document::open(path, {}, progress).scene();
+  return read_any(path, {}, progress);
+}
+
+// Pictures of the views, and the poster; without OpenGL the page has none.
+void add_pictures(Session& session, const PublishAction& action, const Scene& scene, const Lighting& lighting,
+                  WebPageOptions& options) {
+  if (options.views.empty() && !action.poster) return;
+  try {
+    const auto picture = [&](const Camera& camera, int side) {
+      View view;
+      view.camera = fitted(scene, camera, 1);
+      view.width = view.height = side;
+      return session.renderer().render(scene, view, {}, &lighting);
+    };
+    constexpr int thumbnail_side = 96, poster_side = 800;
+    for (const auto& [name, camera] : options.views) options.thumbnails[name] = picture(camera, thumbnail_side);
+    if (action.poster) options.poster = picture(options.home, poster_side);
+  } catch (const DeviceError& error) {
+    session.say(fmt::format("note: the page has no pictures of its views: {}", error.what()));
+  }
 }
 
 std::uint64_t bytes_of(const WebPage& page) {
@@ -72,7 +101,8 @@ std::uint64_t bytes_of(const WebPage& page) {
 
 void run(Session& session, const PublishAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
-  const SourceGuard sources = session.document.sources();
+  SourceGuard sources = session.document.sources();
+  if (!action.before.empty()) protect_input(sources, action.before);
   if (action.single_file) {
     if (fs::path(action.out).extension() != ".html") throw FieldError("out", "must end in .html for a single file");
     sources.check_file(action.out);
@@ -81,7 +111,13 @@ void run(Session& session, const PublishAction& action) {
   const Scene& scene = session.scene();
   const auto write = [&](const auto& commit) {
     const Lighting lighting = lit(scene, session.progress);
-    const WebPage page = web_page(scene, lighting, options_of(scene, action), session.progress);
+    WebPageOptions options = options_of(scene, action);
+    add_pictures(session, action, scene, lighting, options);
+    std::optional<Scene> before;
+    if (!action.before.empty()) before = opened(action.before, session.progress);
+    const Lighting before_lighting = before ? lit(*before, session.progress) : Lighting();
+    const WebPage page = web_page({scene, lighting}, options, session.progress,
+                                  before ? std::optional<LitScene>({*before, before_lighting}) : std::nullopt);
     commit(page);
     session.outputs.push_back(action.out);
     session.say(fmt::format("published {}: {} triangles, {:.2f} MB", action.out, page.triangles,
@@ -111,6 +147,12 @@ REBAKE_DESCRIBE_ACTION(
       visit("views", action.views, Need::optional, "names of stored views that the page offers; default: all");
       visit("single_file", action.single_file, Need::optional,
             "one file that works without a server and makes no request");
+      visit("before", action.before, Need::optional,
+            "the scene before the edits, which a button shows: a folder, scene or project");
+      visit("poster", action.poster, Need::optional,
+            "a picture that shows until the scene is loaded, and in links to the page");
+      visit("transparent", action.transparent, Need::optional,
+            "no background: what lies under the page's frame shows through");
     })
 
 }  // namespace rebake

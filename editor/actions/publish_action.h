@@ -14,6 +14,9 @@ struct PublishAction {
   std::optional<Camera> camera;    ///< at the start; nothing: one that frames the scene
   std::vector<std::string> views;  ///< stored views to offer; empty: all
   bool single_file = false;
+  std::string before;        ///< scene before the edits: a folder, scene or project; empty: none
+  bool poster = false;       ///< a picture that shows until the scene is loaded, and in links
+  bool transparent = false;  ///< no background
 };
 template <>
 const ActionType& action_type<PublishAction>();

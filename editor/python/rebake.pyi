@@ -123,7 +123,7 @@ class Document:
         picture_size: plain: side of the pictures for measuring, in pixels, 16 to 4096
         nodes: only these nodes and their children; default: all
         """
-    def publish(self, path: str | PathLike[str], title: str = "", view: str = "", camera: Camera | None = None, views: Sequence[str] | None = None, single_file: bool = False) -> list[str]:
+    def publish(self, path: str | PathLike[str], title: str = "", view: str = "", camera: Camera | None = None, views: Sequence[str] | None = None, single_file: bool = False, before: str = "", poster: bool = False, transparent: bool = False) -> list[str]:
         """Publishes the scene as a web page; returns notes: its size, and the parts that it carries or leaves out.
 
         path: folder to write, or the file NAME.html with single_file
@@ -132,6 +132,9 @@ class Document:
         camera: the camera at the start
         views: names of stored views that the page offers; default: all
         single_file: one file that works without a server and makes no request
+        before: the scene before the edits, which a button shows: a folder, scene or project
+        poster: a picture that shows until the scene is loaded, and in links to the page
+        transparent: no background: what lies under the page's frame shows through
         """
     def write_picture(self, out: str | PathLike[str], view: str = "", camera: Camera | None = None, width: int = 800, height: int = 800, samples: int = 4, transparent: bool = False, panorama: bool = False, passes: Sequence[str] | None = None, separate: bool = False, time: float | None = None, sheet: Sequence[int] | None = None, nodes: Sequence[Node] | None = None) -> list[str]:
         """Renders the scene to a picture file; returns notes.

@@ -11,7 +11,7 @@ namespace rebake {
 namespace {
 
 // The modules of the page; each imports only those before it.
-constexpr std::array<const char*, 6> modules{"linear.js",   "scene.js",    "picking.js",
+constexpr std::array<const char*, 7> modules{"linear.js",   "scene.js",    "picking.js", "motion.js",
                                              "renderer.js", "controls.js", "viewer.js"};
 
 void replace_all(std::string& text, std::string_view what, std::string_view by) {
@@ -61,9 +61,13 @@ std::string data_element(const std::string& name, const std::string& bytes, bool
 }  // namespace
 
 bool is_page_file(const std::filesystem::path& path) {
-  static const std::regex data("data/(mesh\\d+\\.gz|feat\\d+\\.[01]\\.(png|webp)|light\\d+\\.(gain|offset)\\.gz)");
+  static const std::regex data(
+      "data/"
+      "((before\\.)?(mesh\\d+\\.gz|feat\\d+\\.[01]\\.(png|webp)|light\\d+\\.(gain|offset)\\.gz)|motion\\.gz|view\\d+\\."
+      "png)");
   const std::string name = path.generic_string();
-  return name == "index.html" || name == "scene.json" || name == "viewer/viewer.css" || std::regex_match(name, data) ||
+  return name == "index.html" || name == "scene.json" || name == "before.json" || name == "poster.png" ||
+         name == "viewer/viewer.css" || std::regex_match(name, data) ||
          std::any_of(modules.begin(), modules.end(),
                      [&](const char* module) { return name == std::string("viewer/") + module; });
 }
@@ -96,20 +100,26 @@ std::string html_escaped(std::string_view text) {
 
 void add_page_text(WebPage& page, const WebPageOptions& options) {
   std::string html = gl::web_page_file("index.html");
-  std::string head, scripts;
+  std::string head, scripts, poster;
+  if (const auto found = page.files.find("poster.png"); found != page.files.end()) {
+    poster = "<img id=\"poster\" alt=\"\" src=\"" +
+             (options.single_file ? "data:image/png;base64," + base64(found->second) : "poster.png") + "\">";
+    if (!options.single_file) head = "<meta property=\"og:image\" content=\"poster.png\">\n";
+  }
   if (options.single_file) {
     // The policy allows no request at all.
-    head =
+    head +=
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
         "style-src 'unsafe-inline'; img-src data: blob:\">\n<style>\n" +
         gl::web_page_file("viewer.css") + "</style>";
-    for (const auto& [name, bytes] : page.files) scripts += data_element(name, bytes, name == "scene.json");
+    for (const auto& [name, bytes] : page.files)
+      if (name != "poster.png") scripts += data_element(name, bytes, name.ends_with(".json"));
     scripts += "<script type=\"module\">\n";
     for (const char* module : modules) scripts += as_part_of_a_script(gl::web_page_file(module));
     scripts += "</script>";
     page.files.clear();
   } else {
-    head =
+    head +=
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'self'; style-src "
         "'self'; connect-src 'self'; img-src 'self' data: blob:\">\n<link rel=\"stylesheet\" "
         "href=\"viewer/viewer.css\">";
@@ -120,6 +130,7 @@ void add_page_text(WebPage& page, const WebPageOptions& options) {
   // The title last: nothing in it is a mark.
   replace_all(html, "<!--head-->", head);
   replace_all(html, "<!--scripts-->", scripts);
+  replace_all(html, "<!--poster-->", poster);
   replace_all(html, "<!--title-->", html_escaped(options.title));
   page.files["index.html"] = html;
 }

@@ -7,11 +7,14 @@
 #include <stdexcept>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/polar.h"
+#include "mesh_ops/formats/images/png_writer.h"
 #include "render/gl/shader_library.h"
 #include "render/graph/effects.h"
 #include "render/graph/plan.h"
 #include "render/passes/decoder_glsl.h"
 #include "render/web_page/page_text.h"
+#include "render/web_page/scene_motion.h"
 #include "render/web_page/web_mesh.h"
 
 namespace rebake {
@@ -78,21 +81,30 @@ struct Kind {
   }
 };
 
-// The page while it is made.
+// One scene of a page while it is made.
 class Publisher {
  public:
-  Publisher(const FramePlan& plan, const Camera& plan_camera, const WebPageOptions& options)
-      : plan_(plan), camera_to_world_(Affine(world_to_camera(plan_camera).transpose())), options_(options) {
-    camera_to_world_.translation() = plan_camera.eye;
+  // `prefix`: of the names of its files.
+  Publisher(const FramePlan& plan, const WebPageOptions& options, std::string prefix, WebPage& page)
+      : plan_(plan),
+        frame_list_(plan.frames),
+        camera_to_world_(Affine(world_to_camera(plan.view.camera).transpose())),
+        options_(options),
+        prefix_(std::move(prefix)),
+        page_(page) {
+    camera_to_world_.translation() = plan.view.camera.eye;
+    for (const Draw& draw : plan.draws) frame_of_.push_back(draw.frame);
     for (const Draw& draw : plan.draws) {
       light_ = std::max(light_, light_of(draw));
       rays_ = rays_ || (draw.set.soup.rotations() != nullptr && plan.uses_view_direction);
       glossy_ = glossy_ || (draw.light && draw.light->gloss);
     }
-    frames_ = plan.frames.size() > 1;
   }
 
-  WebPage page(const Progress& progress) {
+  // Writes the scene's files. `motion`: keyframes, or null.
+  json manifest(const SceneMotion* motion, const Progress& progress) {
+    if (motion != nullptr) give_own_frames(*motion);
+    frames_ = frame_list_.size() > 1;
     json draws = json::array();
     for (const Draw& draw : plan_.draws) add_step(draw);
     for (std::size_t k = 0; k < plan_.draws.size(); ++k) {
@@ -109,16 +121,77 @@ class Publisher {
                      {"targets", {{"frames", frames_}, {"rays", rays_}, {"light", light_}}},
                      {"programs", programs()}};
     manifest["views"] = json::array();
-    for (const auto& [name, camera] : options_.views)
-      manifest["views"].push_back({{"name", name}, {"camera", json_of(camera)}});
-    decide();
-    manifest["decisions"] = page_.decisions;
-    manifest["triangles"] = page_.triangles;
-    page_.files["scene.json"] = manifest.dump();
-    return std::move(page_);
+    if (options_.transparent) manifest["transparent"] = true;
+    if (motion != nullptr) manifest["motion"] = motion_entry(*motion);
+    manifest["triangles"] = triangles_;
+    return manifest;
   }
 
+  // The parts that the scene needs, and why.
+  std::vector<std::string> decisions() const {
+    std::vector<std::string> said;
+    const auto say = [&](const char* name, bool carried, const std::string& why) {
+      said.push_back(fmt::format("{} {}: {}", carried ? "carried" : "left out", name, why));
+    };
+    say("node target", frames_,
+        frames_ ? fmt::format("{} decoders or orientations", frame_list_.size()) : "one decoder and orientation");
+    say("rotated rays", rays_, rays_ ? "edits rotated triangles" : "no triangle was rotated relative to its object");
+    say("light maps", light_ > 0, light_ > 0 ? "light follows edits" : "light changes nothing");
+    if (glossy_) say("moving highlights", false, "the page does not draw them; light maps keep their diffuse part");
+    say("view direction", plan_.uses_view_direction,
+        plan_.uses_view_direction ? "colours depend on it" : "no decoder depends on it");
+    return said;
+  }
+  std::size_t triangles() const { return triangles_; }
+
  private:
+  // Draws that move have frames of their own, which the page rotates.
+  void give_own_frames(const SceneMotion& motion) {
+    for (std::size_t k = 0; k < plan_.draws.size(); ++k) {
+      const auto moved = motion.places.find(plan_.draws[k].node);
+      if (moved == motion.places.end()) continue;
+      moving_.push_back(k);
+      frame_list_.push_back(plan_.frames[plan_.draws[k].frame]);
+      frame_of_[k] = frame_list_.size() - 1;
+      const Affine rest = camera_to_world_ * plan_.draws[k].to_camera;
+      const Box bounds = plan_.draws[k].set.soup.bounds();
+      for (const Affine& place : moved->second.at_times)
+        box_.extend(transformed(bounds, place * moved->second.rest.inverse() * rest));
+    }
+  }
+
+  // Numbers of each sample: per moving draw the rows of object to world and of world to decoder, then the camera.
+  json motion_entry(const SceneMotion& motion) {
+    std::string bytes;
+    const auto put = [&](double value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    const auto put_all = [&](const auto& m) {
+      for (Eigen::Index row = 0; row < m.rows(); ++row)
+        for (Eigen::Index column = 0; column < m.cols(); ++column) put(m(row, column));
+    };
+    for (std::size_t t = 0; t < motion.samples; ++t) {
+      for (const std::size_t k : moving_) {
+        const NodePlaces& places = motion.places.at(plan_.draws[k].node);
+        const Affine& place = places.at_times[t];
+        put_all(
+            (place * places.rest.inverse() * camera_to_world_ * plan_.draws[k].to_camera).matrix().topRows<3>().eval());
+        // Decoders rotate with their object.
+        put_all((frame_list_[frame_of_[k]].world_to_decoder * orthogonal_factor(places.rest.linear()) *
+                 orthogonal_factor(place.linear()).transpose())
+                    .eval());
+      }
+      if (motion.cameras.empty()) continue;
+      const Camera& camera = motion.cameras[t];
+      for (const Vec3& v : {camera.eye, camera.target, camera.up}) put_all(v);
+      for (const double value : {camera.fov_degrees, camera.ortho_height, camera.near_plane, camera.far_plane})
+        put(value);
+    }
+    return {{"file", add_file("motion.gz", gzipped(bytes))},
+            {"rate", motion.rate},
+            {"samples", motion.samples},
+            {"draws", moving_},
+            {"camera", !motion.cameras.empty()}};
+  }
+
   static int light_of(const Draw& draw) { return !draw.light ? 0 : draw.light->offset.empty() ? 1 : 2; }
 
   json draw_of(const Draw& draw, std::size_t number) {
@@ -127,7 +200,7 @@ class Publisher {
     kinds_[kind.name()] = kind;
     box_.extend(transformed(draw.set.soup.bounds(), to_world));
     json result = {{"set", set_of(draw, number)},
-                   {"frame", draw.frame},
+                   {"frame", frame_of_[number]},
                    {"kind", kind.name()},
                    {"toWorld", row_major(to_world.matrix().topRows<3>())},
                    {"objectToFed", row_major(axes_matrix(draw.axes))}};
@@ -170,13 +243,13 @@ class Publisher {
   std::size_t set_of(const Draw& draw, std::size_t number) {
     for (std::size_t k = 0; k < known_.size(); ++k)
       if (share_a_set(*known_[k].draw, draw)) {
-        page_.triangles += known_[k].triangles;
+        triangles_ += known_[k].triangles;
         return k;
       }
     const PreparedSurface surface = prepared_surface(draw.set, false);
     json set;
     const WebMesh mesh = web_mesh(surface, step_of(draw), draw.light.get(), set);
-    page_.triangles += mesh.triangles;
+    triangles_ += mesh.triangles;
     set["mesh"] = add_file(fmt::format("mesh{}.gz", number), mesh.bytes);
     WebTexels texels = web_texels(surface);
     set["texels"] = {{"width", texels.width}, {"height", texels.height}};
@@ -188,15 +261,19 @@ class Publisher {
     return sets_.size() - 1;
   }
 
+  // Equal files are carried once.
   json add_file(const std::string& name, std::string bytes) {
-    json file = {{"name", "data/" + name}, {"bytes", bytes.size()}};
-    page_.files["data/" + name] = std::move(bytes);
+    for (const auto& [known, content] : page_.files)
+      if (content == bytes) return {{"name", known}, {"bytes", bytes.size()}};
+    const std::string path = "data/" + prefix_ + name;
+    json file = {{"name", path}, {"bytes", bytes.size()}};
+    page_.files[path] = std::move(bytes);
     return file;
   }
 
   json frames() const {
     json frames = json::array();
-    for (const DecodeFrame& frame : plan_.frames)
+    for (const DecodeFrame& frame : frame_list_)
       frames.push_back({{"decoder", frame.decoder},
                         {"worldToDecoder", row_major(frame.world_to_decoder)},
                         {"alpha", frame.alpha_code == AlphaCode::halved ? json{2, -1} : json{1, 0}}});
@@ -230,23 +307,14 @@ class Publisher {
     return programs;
   }
 
-  void decide() {
-    const auto say = [&](const char* name, bool carried, const std::string& why) {
-      page_.decisions.push_back(fmt::format("{} {}: {}", carried ? "carried" : "left out", name, why));
-    };
-    say("node target", frames_,
-        frames_ ? fmt::format("{} decoders or orientations", plan_.frames.size()) : "one decoder and orientation");
-    say("rotated rays", rays_, rays_ ? "edits rotated triangles" : "no triangle was rotated relative to its object");
-    say("light maps", light_ > 0, light_ > 0 ? "light follows edits" : "light changes nothing");
-    if (glossy_) say("moving highlights", false, "the page does not draw them; light maps keep their diffuse part");
-    say("view direction", plan_.uses_view_direction,
-        plan_.uses_view_direction ? "colours depend on it" : "no decoder depends on it");
-  }
-
   const FramePlan& plan_;
+  std::vector<DecodeFrame> frame_list_;
+  std::vector<std::size_t> frame_of_, moving_;  // frame of each draw; draws with keyframes
   Affine camera_to_world_;
   const WebPageOptions& options_;
-  WebPage page_;
+  std::string prefix_;
+  WebPage& page_;
+  std::size_t triangles_ = 0;
   json sets_ = json::array();
   struct Known {
     const Draw* draw;  // the first of the set
@@ -260,12 +328,52 @@ class Publisher {
   int light_ = 0;
 };
 
+// Adds a PNG to a page.
+json add_picture(WebPage& page, const std::string& name, const Image& picture) {
+  constexpr int compression = 6;
+  page.files[name] = encode_png(picture.width, picture.height, 3, picture.rgb, compression);
+  return {{"name", name}, {"bytes", page.files[name].size()}};
+}
+
 }  // namespace
 
-WebPage web_page(const Scene& scene, const Lighting& lighting, const WebPageOptions& options,
-                 const Progress& progress) {
-  const FramePlan plan = plan_of_all(scene, lighting);
-  WebPage page = Publisher(plan, plan.view.camera, options).page(progress);
+WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Progress& progress,
+                 const std::optional<LitScene>& before) {
+  WebPage page;
+  const FramePlan plan = plan_of_all(scene.scene, scene.lighting);
+  const std::optional<SceneMotion> motion = scene_motion(scene.scene);
+  Publisher publisher(plan, options, "", page);
+  json manifest = publisher.manifest(motion ? &*motion : nullptr, progress);
+  page.triangles = publisher.triangles();
+  page.decisions = publisher.decisions();
+  const auto say = [&](const char* name, bool carried, const std::string& why) {
+    page.decisions.push_back(fmt::format("{} {}: {}", carried ? "carried" : "left out", name, why));
+  };
+  say("keyframes", motion.has_value(),
+      !motion ? "nothing moves"
+              : fmt::format("{} nodes{} move for {:.4g} s", motion->places.size(),
+                            motion->cameras.empty() ? "" : " and the camera", motion->duration()));
+  if (motion && scene.lighting.maps.size() > 0)
+    say("light of moving nodes", false, "light maps stay as they are while nodes move");
+  if (has_bend_keyframes(scene.scene)) say("bends by keyframes", false, "the page moves nodes and the camera only");
+  say("scene before the edits", before.has_value(), before ? "asked for" : "not asked for");
+  for (const auto& [name, camera] : options.views) {
+    json view = {{"name", name}, {"camera", json_of(camera)}};
+    if (const auto picture = options.thumbnails.find(name); picture != options.thumbnails.end())
+      view["thumbnail"] = add_picture(page, fmt::format("data/view{}.png", manifest["views"].size()), picture->second);
+    manifest["views"].push_back(view);
+  }
+  if (options.poster) add_picture(page, "poster.png", *options.poster);
+  if (before) {
+    const FramePlan earlier = plan_of_all(before->scene, before->lighting);
+    Publisher other(earlier, options, "before.", page);
+    json other_manifest = other.manifest(nullptr, progress);
+    other_manifest["decisions"] = other.decisions();
+    page.files["before.json"] = other_manifest.dump();
+    manifest["before"] = true;
+  }
+  manifest["decisions"] = page.decisions;
+  page.files["scene.json"] = manifest.dump();
   add_page_text(page, options);
   return page;
 }

@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/light/lighting.h"
 #include "mesh_ops/scene/scene.h"
+#include "render/image.h"
 
 namespace rebake {
 
@@ -21,7 +23,16 @@ struct WebPageOptions {
   /// camera, at the point nearest to it.
   double steps_per_pixel = 256;
   int home_height = 800;
-  bool single_file = false;  ///< everything in index.html, which then works without a server
+  bool single_file = false;                 ///< everything in index.html, which then works without a server
+  bool transparent = false;                 ///< what lies under the page's frame shows in place of the background
+  std::map<std::string, Image> thumbnails;  ///< pictures of views, by name
+  std::optional<Image> poster;              ///< picture of `home` until the scene is loaded
+};
+
+/// A scene in the colours of its lighting.
+struct LitScene {
+  const Scene& scene;
+  const Lighting& lighting;
 };
 
 /// A page as files, and the decisions for it.
@@ -34,10 +45,11 @@ struct WebPage {
 /// Whether a published folder has a file of this relative path.
 bool is_page_file(const std::filesystem::path& path);
 
-/// Makes a page that shows the visible nodes of a scene by Rebake's rule, in the colours of `lighting`. It carries only
-/// the shaders and data that the scene calls for. Throws EditError if nothing is visible, DeviceError and FileError if
-/// the files of the page are missing.
-WebPage web_page(const Scene& scene, const Lighting& lighting, const WebPageOptions& options,
-                 const Progress& progress = {});
+/// Makes a page that shows the visible nodes of a scene by Rebake's rule. It carries only the shaders and data that the
+/// scene calls for; keyframes of places and of the camera are sampled 30 times per second. `before`: the scene before
+/// the edits, which the page then can show too; files that both need are carried once. Throws EditError if nothing is
+/// visible, DeviceError and FileError if the files of the page are missing.
+WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Progress& progress = {},
+                 const std::optional<LitScene>& before = std::nullopt);
 
 }  // namespace rebake

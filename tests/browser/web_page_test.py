@@ -135,6 +135,75 @@ class WebPage(unittest.TestCase):
                            "rotate": {"axis": [0.3, 1, 0.1], "degrees": 3 * k + 1}})
         self.expect_page_of(self.scene(FICUS, *copies))
 
+    def test_keyframes_play(self):
+        turn = {"axis": [0, 1, 0], "degrees": 120}
+        scene = self.scene(FICUS, KETTLE, {**MOVED, "node": "kettle"},
+                           {"op": "key", "node": "kettle", "time": 0, "interpolation": "linear"},
+                           {"op": "key", "node": "kettle", "time": 2, "position": [-0.6, -0.2, 0.7], "rotation": turn})
+        self.show(self.publish(scene))
+        self.expect_picture_of(scene)  # as it stands
+        # 53 dB: positions have the grid of the resting scene.
+        for seconds in (0.5, 2):
+            self.browser.evaluate(f"viewer.seek({seconds})")
+            own = self.at / "own.png"
+            words = [w for key, value in CAMERA.items() for w in ("--" + key, ",".join(map(repr, value)) if isinstance(value, list) else value)]
+            code, text = rebake("render", scene, "--at", seconds, "-o", own, "--size", "400x400", *words)
+            self.assertEqual(code, 0, text)
+            code, text = rebake("compare", self.capture(CAMERA), own, "--min-psnr", 53)
+            self.assertEqual(code, 0, text)
+        self.browser.evaluate("viewer.seek(0)")
+        self.browser.evaluate("viewer.setPlaying(true)")
+        self.assertEqual(self.browser.evaluate("document.getElementById('play').textContent"), "Pause")
+        self.browser.evaluate("new Promise((done) => { const id = setInterval(() => { if (!viewer.playing) { clearInterval(id); done(true); } }, 50); })")
+        self.assertEqual(self.browser.evaluate("viewer.seconds"), 2)
+        self.assertEqual(self.browser.messages, [])
+
+    def test_the_camera_follows_its_keyframes_until_somebody_moves_it(self):
+        scene = self.scene(FICUS, *({"op": "key", "time": t, "camera": {"eye": eye, "target": [0, 0, 0]}}
+                                    for t, eye in ((0, [0, 1, 4]), (1, [4, 1, 0]))))
+        self.show(self.publish(scene))
+        self.browser.evaluate("viewer.seek(1)")
+        self.assertAlmostEqual(self.camera()["eye"][0], 4, 6)
+        self.browser.evaluate("document.getElementById('picture').dispatchEvent(new PointerEvent('wheel'))")
+        before = self.camera()
+        self.browser.evaluate("viewer.seek(0.2)")
+        self.assertEqual(self.camera(), before)
+
+    def test_before_and_after(self):
+        edited = self.scene(FICUS, BEND)
+        page = self.publish(edited, "--before", SAMPLES / "ficus")
+        names = sorted(path.name for path in (page / "data").iterdir())
+        self.assertNotIn("before.feat0.0.webp", names, "equal textures are carried once")
+        self.show(page)
+        self.expect_picture_of(edited)
+        self.browser.evaluate("viewer.showBefore(true)")
+        self.expect_picture_of(SAMPLES / "ficus")
+        self.browser.evaluate("viewer.showBefore(false)")
+        self.expect_picture_of(edited)
+
+    def test_transparent_pages(self):
+        self.show(self.publish(SAMPLES / "ficus", "--transparent"))
+        own = self.at / "own.png"
+        words = [w for key, value in CAMERA.items() for w in ("--" + key, ",".join(map(repr, value)) if isinstance(value, list) else value)]
+        code, text = rebake("render", SAMPLES / "ficus", "-o", own, "--size", "400x400", "--background", "0,0,0", *words)
+        self.assertEqual(code, 0, text)
+        alpha = self.browser.evaluate(f"viewer.setView({json.dumps(CAMERA)}), viewer.renderer.pixels(viewer.camera, 400, 400).filter((_, k) => k % 4 === 3).reduce((sum, a) => sum + (a > 0 && a < 255 ? 1 : 0), 0)")
+        self.assertGreater(alpha, 100, "edges are partly transparent")
+        self.assertEqual(self.browser.evaluate("viewer.renderer.pixels(viewer.camera, 40, 40)[3]"), 0)
+
+    def test_views_have_thumbnails_and_the_page_a_poster(self):
+        scene = self.scene(FICUS, {"op": "view", "name": "front", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0]}})
+        page = self.publish(scene, "--poster")
+        self.assertIn("og:image", (page / "index.html").read_text())
+        self.browser.size(900, 700)
+        self.show(page)
+        self.assertIsNone(self.browser.evaluate("document.getElementById('poster')"), "it goes when the scene is there")
+        image = "document.querySelector('#gallery img')"
+        self.assertEqual(self.browser.evaluate(f"new Promise((done) => setTimeout(() => done([{image}.alt, {image}.naturalWidth]), 300))"), ["front", 96])
+        self.browser.evaluate(f"{image}.parentElement.click()")
+        self.assertAlmostEqual(self.camera()["eye"][2], 4, 6)
+        self.assertEqual(self.browser.messages, [])
+
     def test_cameras_that_show_nothing_are_refused(self):
         self.show(self.publish(SAMPLES / "ficus"))
         before = self.camera()
@@ -312,7 +381,7 @@ class WebPage(unittest.TestCase):
                 self.show(page)
             self.assertEqual(self.browser.evaluate("document.title"), evil)
             self.assertEqual(self.browser.evaluate("document.getElementById('views').options[1].textContent"), evil)
-            self.assertEqual(self.browser.evaluate("document.images.length"), 0)
+            self.assertEqual(self.browser.evaluate("document.querySelectorAll('img:not(#gallery img)').length"), 0)
             self.assertEqual(self.browser.messages, [])
 
     def test_phones(self):

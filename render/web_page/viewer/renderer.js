@@ -365,7 +365,7 @@ export class Renderer {
     if (targets.light > 0) this.bind(program, 'light_gain', 3, samples.textures.gain);
     if (targets.light > 1) this.bind(program, 'light_offset', 4, samples.textures.offset);
     this.setRays(camera, 2 * width, 2 * height, program);
-    gl.uniform4fv(program.at('background'), [...this.scene.background, 1]);
+    gl.uniform4fv(program.at('background'), this.clearColor());
     gl.drawArrays(gl.TRIANGLES, 0, 3);
     ++this.drawCalls;
   }
@@ -401,9 +401,11 @@ export class Renderer {
   }
 
   clearToBackground() {
-    const [r, g, b] = this.scene.background;
-    this.gl.clearBufferfv(this.gl.COLOR, 0, [r, g, b, 1]);
+    this.gl.clearBufferfv(this.gl.COLOR, 0, this.clearColor());
   }
+
+  /** The background with alpha, multiplied by it. */
+  clearColor() { return this.scene.transparent ? [0, 0, 0, 0] : [...this.scene.background, 1]; }
 
   /** @param {Camera} camera @param {Program} program @param {number} frame */
   setDecoder(camera, program, frame) {
@@ -423,6 +425,10 @@ export class Renderer {
     gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
     const bytes = new Uint8ClampedArray(4 * width * height), flipped = new Uint8ClampedArray(bytes.length);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    // Pictures have colours that are not multiplied by alpha.
+    if (this.scene.transparent)
+      for (let p = 0; p < bytes.length; p += 4)
+        for (let c = p; bytes[p + 3] > 0 && c < p + 3; ++c) bytes[c] = bytes[c] * 255 / bytes[p + 3];
     for (let y = 0; y < height; ++y) flipped.set(bytes.subarray(4 * width * y, 4 * width * (y + 1)), 4 * width * (height - 1 - y));
     return flipped;
   }

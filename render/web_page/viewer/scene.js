@@ -11,7 +11,8 @@
  * @typedef {{draws: DrawEntry[], sets: SetEntry[], frames: FrameEntry[], home: import('./linear.js').Camera,
  *   background: [number, number, number], up: [number, number, number], box: [number[], number[]], targets: {frames: boolean, rays: boolean, light: number},
  *   programs: Object<string, {vertex: string, fragment: string}>, decisions: string[], triangles: number,
- *   views: {name: string, camera: import('./linear.js').Camera}[]}} Manifest
+ *   views: {name: string, camera: import('./linear.js').Camera, thumbnail?: FileEntry}[], motion?: import('./motion.js').MotionEntry,
+ *   before?: boolean, transparent?: boolean}} Manifest
  * @typedef {{first: number, count: number, low: number[], high: number[]}} Cluster
  * @typedef {{corners: Uint32Array, positions: Float32Array, texels: Float32Array, rectangles: Uint16Array,
  *   rotations?: Float32Array, lightPlaces?: Float32Array, clusters: Cluster[]}} Mesh
@@ -55,14 +56,14 @@ async function fileBytes(name, received) {
   return bytes;
 }
 
-/** @returns {Promise<Manifest>} */
-export async function loadManifest() {
-  const element = document.getElementById('scene.json');
-  const text = element ? element.textContent ?? '' : new TextDecoder().decode(await fileBytes('scene.json'));
+/** @param {string} name scene.json or before.json @returns {Promise<Manifest>} */
+export async function loadManifest(name) {
+  const element = document.getElementById(name);
+  const text = element ? element.textContent ?? '' : new TextDecoder().decode(await fileBytes(name));
   try {
     return JSON.parse(text);
   } catch {
-    throw Error('scene.json is damaged: publish the scene again, or copy its folder again');
+    throw Error(name + ' is damaged: publish the scene again, or copy its folder again');
   }
 }
 
@@ -70,7 +71,7 @@ export async function loadManifest() {
  * The contents of a gzip file. Some servers unpack it on the way.
  * @param {FileEntry} entry @param {(bytes: number) => void} received @returns {Promise<Uint8Array>}
  */
-async function unpacked(entry, received) {
+export async function unpacked(entry, received) {
   const bytes = await fileBytes(entry.name, received);
   if (bytes[0] !== 0x1f || bytes[1] !== 0x8b) return bytes;
   try {
@@ -95,6 +96,14 @@ export async function loadImage(entry, received) {
   } catch {
     throw damaged(entry);
   }
+}
+
+/**
+ * An address of a picture of the page, for an img element.
+ * @param {FileEntry} entry
+ */
+export async function pictureAddress(entry) {
+  return URL.createObjectURL(new Blob([await fileBytes(entry.name)], {type: 'image/png'}));
 }
 
 /**

@@ -1,7 +1,8 @@
 // @ts-check
 // The page: loads the scene, draws frames when something changes, and offers window.viewer.
 
-import {loadManifest, totalBytes} from './scene.js';
+import {loadManifest, pictureAddress, totalBytes} from './scene.js';
+import {loadMotion} from './motion.js';
 import {depthAlongRay} from './picking.js';
 import {Renderer} from './renderer.js';
 import {Controls} from './controls.js';
@@ -36,8 +37,10 @@ class Viewer extends EventTarget {
 
   async start() {
     element('progress').hidden = false;
-    this.scene = await loadManifest();
+    this.scene = await loadManifest('scene.json');
     this.renderer = new Renderer(canvas, this.scene);
+    /** The edited scene and the one before the edits, with their renderers; the latter is loaded when asked for. */
+    this.edited = {scene: this.scene, renderer: this.renderer};
     this.controls = new Controls(canvas, this.scene.home, this.scene, {
       changed: () => this.changed(),
       depthAt: (x, y) => this.scene && this.renderer ?
@@ -51,6 +54,10 @@ class Viewer extends EventTarget {
     this.atRest = false;
     this.pending = false;
     this.rotating = false;
+    /** @type {boolean} */
+    this.playing = false;
+    this.follows = true;
+    for (const name of ['pointerdown', 'wheel']) canvas.addEventListener(name, () => { this.follows = false; });
     canvas.addEventListener('webglcontextlost', (e) => { e.preventDefault(); this.lost = true; });
     canvas.addEventListener('webglcontextrestored', () => { this.lost = false; void this.restore(); });
     new ResizeObserver(() => this.resize()).observe(canvas);
@@ -58,9 +65,72 @@ class Viewer extends EventTarget {
     this.showStored(this.scene.home);
     this.setUpTools();
     await this.loadAll();
+    this.motion = await loadMotion(this.scene);
+    this.setUpPlayer();
     element('progress').hidden = true;
     await this.drawnAtRest();
+    document.getElementById('poster')?.remove();
     this.dispatchEvent(new Event('ready'));
+  }
+
+  /**
+   * Shows the scene before the edits, or the edited one again. Resolves when it is drawn.
+   * @param {boolean} before
+   */
+  async showBefore(before) {
+    if (!this.edited?.scene.before) throw Error('this page has no scene before the edits; publish it with --before');
+    element('before').setAttribute('aria-pressed', String(before));
+    this.setPlaying(false);
+    if (before && !this.earlier) {
+      element('progress').hidden = false;
+      const scene = await loadManifest('before.json');
+      this.earlier = {scene, renderer: new Renderer(canvas, scene)};
+      Object.assign(this, this.earlier);
+      await this.loadAll();
+      element('progress').hidden = true;
+    }
+    Object.assign(this, before ? this.earlier : this.edited);
+    await this.drawnAtRest();
+  }
+
+  /** Whether the scene before the edits is shown. */
+  get showsBefore() { return this.earlier !== undefined && this.scene === this.earlier.scene; }
+
+  /**
+   * Shows the scene at a time of its keyframes.
+   * @param {number} seconds
+   */
+  seek(seconds) {
+    if (!this.motion) throw Error('this page has no keyframes');
+    this.seconds = Math.max(0, Math.min(this.motion.duration, seconds));
+    const camera = this.motion.apply(this.seconds);
+    // A camera that somebody moves is theirs until the film is played again.
+    if (camera && this.follows) this.showStored(camera);
+    /** @type {HTMLInputElement} */ (element('time')).value = String(this.seconds);
+    this.changed();
+  }
+
+  /** @param {boolean} on */
+  setPlaying(on) {
+    if (on === this.playing) return;
+    if (on && !this.motion) throw Error('this page has no keyframes');
+    this.playing = on;
+    this.follows = true;
+    this.playedAt = undefined;
+    if (on && this.motion && (this.seconds ?? 0) >= this.motion.duration) this.seconds = 0;
+    element('play').setAttribute('aria-pressed', String(on));
+    element('play').textContent = on ? 'Pause' : 'Play';
+    this.changed();
+  }
+
+  setUpPlayer() {
+    const {motion} = this;
+    element('player').hidden = !motion;
+    if (!motion) return;
+    const time = /** @type {HTMLInputElement} */ (element('time'));
+    time.max = String(motion.duration);
+    time.oninput = () => { this.setPlaying(false); this.follows = true; this.seek(Number(time.value)); };
+    element('play').onclick = () => this.setPlaying(!this.playing);
   }
 
   /** Loads all sets; each appears as soon as it is there. */
@@ -92,7 +162,12 @@ class Viewer extends EventTarget {
   async restore() {
     if (!this.scene) return;
     try {
+      // The scene before the edits is loaded again when it is asked for.
+      Object.assign(this, this.edited);
+      this.earlier = undefined;
+      element('before').setAttribute('aria-pressed', 'false');
       this.renderer = new Renderer(canvas, this.scene);
+      this.edited = {scene: this.scene, renderer: this.renderer};
       await this.loadAll();
       await this.drawnAtRest();
       this.dispatchEvent(new Event('restored'));
@@ -164,7 +239,8 @@ class Viewer extends EventTarget {
     const {renderer} = this;
     if (!renderer || this.lost || canvas.width === 0 || canvas.height === 0) return;
     if (this.rotating) this.rotateTo(now);
-    const begin = performance.now(), moving = this.rotating || begin - (this.moved ?? 0) < restAfter;
+    if (this.playing) this.playTo(now);
+    const begin = performance.now(), moving = this.rotating || this.playing || begin - (this.moved ?? 0) < restAfter;
     try {
       if (moving) renderer.drawMoving(this.camera, canvas.width, canvas.height, this.share ?? 1);
       else renderer.drawAtRest(this.camera, canvas.width, canvas.height, null);
@@ -217,6 +293,14 @@ class Viewer extends EventTarget {
     this.rotatedAt = now;
   }
 
+  /** @param {number} now */
+  playTo(now) {
+    const passed = (now - (this.playedAt ?? now)) / 1000;
+    this.playedAt = now;
+    this.seek((this.seconds ?? 0) + passed);
+    if (this.motion && (this.seconds ?? 0) >= this.motion.duration) this.setPlaying(false);
+  }
+
   /** @param {boolean} on */
   setRotating(on) {
     this.rotating = on;
@@ -235,10 +319,15 @@ class Viewer extends EventTarget {
   setUpTools() {
     const {scene} = this;
     if (!scene) return;
-    const home = () => { this.setRotating(false); this.showStored(scene.home); };
+    const home = () => { this.setRotating(false); this.setPlaying(false); this.showStored(scene.home); };
     const rotate = () => this.setRotating(!this.rotating);
     const full = () => void (document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen());
     const about = () => this.openPanel(element('panel').hidden);
+    const play = () => { if (this.motion && !this.showsBefore) this.setPlaying(!this.playing); };
+    const before = () => { if (scene.before) this.showBefore(!this.showsBefore).catch(showError); };
+    element('before').hidden = !scene.before;
+    element('before').onclick = before;
+    document.documentElement.classList.toggle('transparent', Boolean(scene.transparent));
     element('home').onclick = home;
     element('rotate').onclick = rotate;
     element('full').onclick = full;
@@ -247,8 +336,8 @@ class Viewer extends EventTarget {
     element('rotate').hidden = matchMedia('(prefers-reduced-motion: reduce)').matches;
     element('full').hidden = !document.fullscreenEnabled;
     window.addEventListener('keydown', (e) => {
-      if (e.ctrlKey || e.metaKey || e.altKey || e.target instanceof HTMLSelectElement) return;
-      const action = {h: home, r: rotate, f: full, i: about, escape: () => this.openPanel(false)}[e.key.toLowerCase()];
+      if (e.ctrlKey || e.metaKey || e.altKey || e.target instanceof HTMLSelectElement || e.target instanceof HTMLInputElement) return;
+      const action = {h: home, r: rotate, f: full, i: about, p: play, b: before, escape: () => this.openPanel(false)}[e.key.toLowerCase()];
       if (action) action();
       else if (this.controls?.keyPressed(e)) e.preventDefault();
     });
@@ -261,14 +350,26 @@ class Viewer extends EventTarget {
     views.hidden = scene.views.length === 0;
     views.append(new Option('Views', ''));
     scene.views.forEach(({name}, k) => views.append(new Option(name, String(k))));
+    /** @param {Camera} camera */
+    const choose = (camera) => { this.setRotating(false); this.setPlaying(false); this.showStored(camera); };
     views.onchange = () => {
       const view = scene.views[Number(views.value)];
       if (views.value === '' || !view) return;
       // The menu names no view, so that each can be chosen again.
       views.value = '';
-      this.setRotating(false);
-      this.showStored(view.camera);
+      choose(view.camera);
     };
+    for (const {name, camera, thumbnail} of scene.views) {
+      if (!thumbnail) continue;
+      const button = document.createElement('button'), image = document.createElement('img');
+      image.alt = name;
+      button.title = name;
+      button.append(image);
+      button.onclick = () => choose(camera);
+      element('gallery').append(button);
+      pictureAddress(thumbnail).then((address) => { image.src = address; }, showError);
+    }
+    element('gallery').hidden = !scene.views.some(({thumbnail}) => thumbnail);
   }
 
   showStats() {

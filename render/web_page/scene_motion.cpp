@@ -1,0 +1,56 @@
+#include "render/web_page/scene_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh_ops/motion/scene_at.h"
+
+namespace rebake {
+
+namespace {
+
+// The scene without keyframes of bends.
+Scene without_bend_keys(const Scene& scene) {
+  Scene result = scene;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.node->motion || placed.node->motion->bends.empty()) continue;
+    NodeMotion motion = *placed.node->motion;
+    motion.bends.clear();
+    result = with_changed(result, placed.node->id, [&](Node& node) {
+      node.motion = motion.empty() ? nullptr : std::make_shared<const NodeMotion>(motion);
+    });
+  }
+  return result;
+}
+
+}  // namespace
+
+bool has_bend_keyframes(const Scene& scene) {
+  const std::vector<PlacedNode> nodes = placed_nodes(scene);
+  return std::any_of(nodes.begin(), nodes.end(), [](const PlacedNode& placed) {
+    return placed.node->motion && !placed.node->motion->bends.empty();
+  });
+}
+
+std::optional<SceneMotion> scene_motion(const Scene& whole) {
+  const Scene scene = without_bend_keys(whole);
+  if (!has_keyframes(scene)) return std::nullopt;
+  SceneMotion motion;
+  motion.samples = static_cast<std::size_t>(std::ceil(duration(scene) * motion.rate)) + 1;
+  std::map<NodeId, NodePlaces> places;
+  for (const PlacedNode& placed : placed_nodes(scene)) places[placed.node->id].rest = placed.to_world;
+  for (std::size_t t = 0; t < motion.samples; ++t) {
+    const double seconds = static_cast<double>(t) / motion.rate;
+    const Scene moved = scene_at(scene, seconds);
+    for (const PlacedNode& placed : placed_nodes(moved)) places[placed.node->id].at_times.push_back(placed.to_world);
+    if (!scene.camera_keys.empty())
+      motion.cameras.push_back(with_planes(value_at(scene.camera_keys, seconds), world_bounds(moved), 1));
+  }
+  for (auto& [node, one] : places)
+    if (std::any_of(one.at_times.begin(), one.at_times.end(),
+                    [&](const Affine& at) { return at.matrix() != one.rest.matrix(); }))
+      motion.places.emplace(node, std::move(one));
+  return motion;
+}
+
+}  // namespace rebake

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "mesh_ops/scene/scene.h"
+
+namespace rebake {
+
+/// Places of a node with keyframes, of its own or of a group above it, in world space.
+struct NodePlaces {
+  Affine rest;                   ///< as the scene stands
+  std::vector<Affine> at_times;  ///< one per sample
+};
+
+/// Keyframes of places and of the camera, sampled at equal times from 0.
+struct SceneMotion {
+  double rate = 30;  ///< samples per second
+  std::size_t samples = 0;
+  std::map<NodeId, NodePlaces> places;  ///< of the nodes that move
+  std::vector<Camera> cameras;          ///< one per sample, with planes; empty without keyframes of the camera
+
+  double duration() const { return static_cast<double>(samples - 1) / rate; }
+};
+
+/// Nothing if no place and no camera has keyframes. Throws EditError for places that cannot be interpolated.
+std::optional<SceneMotion> scene_motion(const Scene& scene);
+/// Whether a node bends by keyframes.
+bool has_bend_keyframes(const Scene& scene);
+
+}  // namespace rebake
