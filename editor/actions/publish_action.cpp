@@ -13,6 +13,7 @@
 
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/formats.h"
+#include "mesh_ops/formats/images/png_writer.h"
 #include "mesh_ops/formats/scene_files.h"
 #include "render/web_page/web_page.h"
 
@@ -81,7 +82,9 @@ void add_pictures(Session& session, const PublishAction& action, const Scene& sc
       View view;
       view.camera = fitted(scene, camera, 1);
       view.width = view.height = side;
-      return session.renderer().render(scene, view, {}, &lighting);
+      const Image image = session.renderer().render(scene, view, {}, &lighting);
+      constexpr int compression = 6;
+      return encode_png(image.width, image.height, 3, image.rgb, compression);
     };
     constexpr int thumbnail_side = 96, poster_side = 800;
     for (const auto& [name, camera] : options.views) options.thumbnails[name] = picture(camera, thumbnail_side);
@@ -152,7 +155,7 @@ REBAKE_DESCRIBE_ACTION(
       visit("poster", action.poster, Need::optional,
             "a picture that shows until the scene is loaded, and in links to the page");
       visit("transparent", action.transparent, Need::optional,
-            "no background: what lies under the page's frame shows through");
+            "no background: the page that embeds this one shows through");
     })
 
 }  // namespace rebake

@@ -13,7 +13,7 @@ namespace rebake {
 /// light.
 std::uint64_t picture_hash(const Scene& scene, const Progress& progress = {});
 
-/// A folder of numbered pictures (00000.png, …) with a file film.json that says what they show, so that a film that was
+/// A folder of numbered pictures (00000.png, …) with a file film.json that identifies the film, so that a film that was
 /// interrupted goes on.
 class PictureFolder {
  public:

@@ -8,7 +8,6 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
-#include "mesh_ops/formats/images/png_writer.h"
 #include "render/gl/shader_library.h"
 #include "render/graph/effects.h"
 #include "render/graph/plan.h"
@@ -328,13 +327,6 @@ class Publisher {
   int light_ = 0;
 };
 
-// Adds a PNG to a page.
-json add_picture(WebPage& page, const std::string& name, const Image& picture) {
-  constexpr int compression = 6;
-  page.files[name] = encode_png(picture.width, picture.height, 3, picture.rgb, compression);
-  return {{"name", name}, {"bytes", page.files[name].size()}};
-}
-
 }  // namespace
 
 WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Progress& progress,
@@ -359,11 +351,14 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
   say("scene before the edits", before.has_value(), before ? "asked for" : "not asked for");
   for (const auto& [name, camera] : options.views) {
     json view = {{"name", name}, {"camera", json_of(camera)}};
-    if (const auto picture = options.thumbnails.find(name); picture != options.thumbnails.end())
-      view["thumbnail"] = add_picture(page, fmt::format("data/view{}.png", manifest["views"].size()), picture->second);
+    if (const auto picture = options.thumbnails.find(name); picture != options.thumbnails.end()) {
+      const std::string file = fmt::format("data/view{}.png", manifest["views"].size());
+      page.files[file] = picture->second;
+      view["thumbnail"] = {{"name", file}, {"bytes", picture->second.size()}};
+    }
     manifest["views"].push_back(view);
   }
-  if (options.poster) add_picture(page, "poster.png", *options.poster);
+  if (!options.poster.empty()) page.files["poster.png"] = options.poster;
   if (before) {
     const FramePlan earlier = plan_of_all(before->scene, before->lighting);
     Publisher other(earlier, options, "before.", page);
