@@ -106,12 +106,12 @@ class Document:
         """The texels by tile row and column, 256 × 256 × 8 per tile (feat0 RGBA, feat1 RGBA); read-only, unpacked by each call."""
     def texture(self, node: Node, texture_set: int = 0) -> NDArray[np.uint8]:
         """All texels as one array, height × width × 8; a copy."""
-    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None, format: Literal["mobilenerf", "rebake", "nerf2mesh", "gltf"] = "mobilenerf", plain: bool = False, width: int | Literal["auto"] | None = None, way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto", psnr: float | None = None, seconds: float = 0.0, report: str | PathLike[str] = "", page_size: int | None = None, picture_size: int = 800, nodes: Sequence[Node] | None = None) -> list[str]:
+    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None, format: Literal["mobilenerf", "rebake", "nerf2mesh", "gltf", "gltf_features"] = "mobilenerf", plain: bool = False, width: int | Literal["auto"] | None = None, way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto", psnr: float | None = None, seconds: float = 0.0, report: str | PathLike[str] = "", page_size: int | None = None, picture_size: int = 800, nodes: Sequence[Node] | None = None) -> list[str]:
         """Exports the scene; returns notes about conversions and losses, and with plain the measured errors.
 
         path: folder to write
         layout: layout of the output; default: as read
-        format: mobilenerf: for the published viewers; rebake: keeps every node; nerf2mesh: only scenes of such folders; gltf: meshes of mean colours, for modelling programs
+        format: mobilenerf: for the published viewers; rebake: keeps every node; nerf2mesh: only scenes of such folders; gltf: meshes of mean colours, for modelling programs; gltf_features: as gltf, with everything that Rebake needs to read the same scene back
         plain: write one folder for any scene: if no decoder represents it exactly, or light changes colours, one is fitted
         width: plain: maximum width of the decoder's hidden layers, 4 to 256, or auto
         way: plain: keep one decoder, fine-tune it, train a new one, or put all side by side; default: the best
@@ -134,7 +134,7 @@ class Document:
         single_file: one file that works without a server and makes no request
         before: the scene before the edits, which a button shows: a folder, scene or project
         poster: a picture that shows until the scene is loaded, and in links to the page
-        transparent: no background: what lies under the page's frame shows through
+        transparent: no background: the page that embeds this one shows through
         """
     def write_picture(self, out: str | PathLike[str], view: str = "", camera: Camera | None = None, width: int = 800, height: int = 800, samples: int = 4, transparent: bool = False, panorama: bool = False, passes: Sequence[str] | None = None, separate: bool = False, time: float | None = None, sheet: Sequence[int] | None = None, nodes: Sequence[Node] | None = None) -> list[str]:
         """Renders the scene to a picture file; returns notes.

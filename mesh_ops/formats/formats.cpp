@@ -8,6 +8,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/gltf_features.h"
 #include "mesh_ops/formats/meshes/gltf_scene.h"
 #include "mesh_ops/formats/meshes/obj_scene.h"
 #include "mesh_ops/formats/meshes/ply_scene.h"
@@ -109,6 +110,12 @@ Scene read_single_file(const fs::path& file, const ReadOptions& /*not for meshes
   return with_added({}, node, NodeId::none, 0);
 }
 
+// A scene that Rebake wrote with its features, or one node of the triangles of any other file.
+Scene read_glb(const fs::path& file, const ReadOptions& options, const Progress& progress) {
+  if (std::optional<Scene> scene = read_gltf_features(file, progress)) return *std::move(scene);
+  return read_single_file<read_gltf_object>(file, options, progress);
+}
+
 constexpr char obj_extension[] = ".obj", glb_extension[] = ".glb", gltf_extension[] = ".gltf", ply_extension[] = ".ply";
 
 constexpr Format::Folder nerf2mesh_folder{has_nerf2mesh_decoder, is_nerf2mesh_file_name,
@@ -132,7 +139,9 @@ constexpr Format table[] = {
     {"obj", "OBJ", "textured meshes", obj_extension, false, true, is_single_file<obj_extension>,
      read_single_file<read_obj_object>, obj_files, nullptr, nullptr},
     {"gltf", "glTF", "meshes of mean colours, for modelling programs", glb_extension, false, false,
-     is_single_file<glb_extension>, read_single_file<read_gltf_object>, gltf_files, write_gltf, nullptr},
+     is_single_file<glb_extension>, read_glb, gltf_files, write_gltf, nullptr},
+    {"gltf_features", "glTF with features", "as gltf, with everything that Rebake needs to read the same scene back",
+     glb_extension, false, true, nullptr, nullptr, nullptr, write_gltf_features, nullptr},
     {"gltf_text", "glTF", "textured meshes", gltf_extension, false, true, is_single_file<gltf_extension>,
      read_single_file<read_gltf_object>, gltf_files, nullptr, nullptr},
     {"ply", "PLY", "textured or coloured meshes", ply_extension, false, true, is_single_file<ply_extension>,

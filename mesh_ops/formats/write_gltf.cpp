@@ -10,8 +10,12 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/features/atlas/atlas.h"
 #include "mesh_ops/features/distill/mean_colors.h"
+#include "mesh_ops/formats/gltf_features.h"
 #include "mesh_ops/formats/images/png_writer.h"
+#include "mesh_ops/formats/mobilenerf/feature_png.h"
+#include "mesh_ops/formats/mobilenerf/rotations_file.h"
 #include "mesh_ops/formats/motion_samples.h"
+#include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/opacity.h"
 
@@ -40,9 +44,10 @@ json column_major(const Matrix& m) {
 }
 
 // The document while it is made.
-class GltfDocument {
+class GltfWriter {
  public:
-  GltfDocument(const Scene& scene, const Progress& progress) : progress_(progress) {
+  // `features`: also carries everything in an extension (gltf_features.h).
+  GltfWriter(const Scene& scene, bool features, const Progress& progress) : progress_(progress), features_(features) {
     for (const PlacedNode& placed : placed_nodes(scene))
       if (placed.visible && placed.node->object) visible_.push_back(placed);
     if (visible_.empty()) throw EditError("there is nothing to export: no visible node has triangles");
@@ -64,6 +69,7 @@ class GltfDocument {
     root_["scene"] = 0;
     root_["asset"] = {{"version", "2.0"}, {"generator", generator}};
     root_["extensionsUsed"] = {"KHR_materials_unlit"};
+    if (features_) add_features(scene);
     root_["samplers"] = json::array(
         {{{"magFilter", nearest}, {"minFilter", nearest}, {"wrapS", clamp_to_edge}, {"wrapT", clamp_to_edge}}});
     if (!channels_.empty())
@@ -174,8 +180,10 @@ class GltfDocument {
     if (node.motion && !node.motion->bends.empty()) bends = bend_poses(node);
     std::vector<std::vector<TextureSet>> poses;
     if (bends)
-      for (const auto& pose : bends->poses) poses.push_back(packed(*pose));
-    const std::vector<TextureSet> sets = packed(bends ? *bends->rest : *node.object);
+      for (const auto& pose : bends->poses) poses.push_back(features_ ? pose->sets : packed(*pose));
+    const BakedObject& rest = bends ? *bends->rest : *node.object;
+    // The meshes of an object with features are its own sets.
+    const std::vector<TextureSet> sets = features_ ? rest.sets : packed(rest);
     for (std::size_t s = 0; s < sets.size(); ++s) {
       const TextureSet& set = sets[s];
       progress_.at("averaging colours of " + node.name,
@@ -183,9 +191,10 @@ class GltfDocument {
       if (set.soup.triangle_count() == 0) continue;
       const MeanColors colors = mean_colors(set, *placed, *rays_, size_, directions, loss);
       const Vec3 centre = set.soup.bounds().center();
+      const std::size_t material = add_material(node.name, colors);
       const std::size_t mesh =
-          add_to("meshes", {{"name", node.name},
-                            {"primitives", json::array({primitive(set, centre, add_material(node.name, colors))})}});
+          add_to("meshes", {{"name", node.name}, {"primitives", json::array({primitive(set, centre, material)})}});
+      if (features_) add_set(*node.object, s, mesh);
       json part = {{"name", node.name + " triangles"}, {"mesh", mesh}};
       if (!centre.isZero(0)) part["translation"] = {centre.x(), centre.y(), centre.z()};
       nodes.push_back(add_to("nodes", part));
@@ -205,6 +214,58 @@ class GltfDocument {
           fmt::format("{} triangles of \"{}\" are visible from no direction: their colours are means over all",
                       loss.hidden, node.name));
     return nodes;
+  }
+
+  // A feature image as a texture, with its bytes as in the format's own files.
+  std::size_t add_feature_texture(const FeatureTexture& texels, int image) {
+    const std::string png = write_feature_png(texels, image);
+    const std::size_t view = add_view(png.data(), png.size(), 0);
+    return add_to("textures",
+                  {{"sampler", 0}, {"source", add_to("images", {{"bufferView", view}, {"mimeType", "image/png"}})}});
+  }
+
+  // The features of an object's texture set, on its mesh: on materials they would stand beside KHR_materials_unlit,
+  // which validators warn of. Sets that share textures share them here too.
+  void add_set(const BakedObject& object, std::size_t number, std::size_t mesh) {
+    const TextureSet& set = object.sets[number];
+    auto& textures = feature_textures_[set.texels.get()];
+    if (textures.empty())
+      for (const int image : {0, 1}) textures.push_back(add_feature_texture(*set.texels, image));
+    root_["meshes"][mesh]["extensions"][gltf_features_extension] = {
+        {"features", {{{"index", textures[0]}}, {{"index", textures[1]}}}},
+        {"alphaCode", set.texels->alpha_code() == AlphaCode::halved ? "halved" : "plain"}};
+    json& sets = object_sets_[&object];
+    if (sets.size() <= number)  // nodes can share an object
+      while (sets.size() <= number) sets.push_back(nullptr);
+    if (!sets[number].is_null()) return;
+    const Soup& soup = set.soup;
+    const auto view = [&](const auto& values) { return add_view(values.data(), values.size() * sizeof(values[0]), 0); };
+    sets[number] = {{"mesh", mesh},
+                    {"positions", view(soup.positions())},
+                    {"uvs", view(soup.uvs())},
+                    {"faces", view(soup.faces())}};
+  }
+
+  // The part of the extension that belongs to the file: objects with their decoders, and the scene.
+  void add_features(const Scene& scene) {
+    std::map<const BakedObject*, std::string> names;
+    json objects = json::array();
+    for (const auto& [object, sets] : object_sets_) {
+      names[object] = std::to_string(objects.size());
+      json stored = json::array();
+      for (const json& set : sets)
+        if (!set.is_null()) stored.push_back(set);
+      json made = object_json(*object, stored);
+      if (object->any_rotations()) {
+        const std::string rotations = write_rotations(object->sets);
+        made["rotations"] = add_view(rotations.data(), rotations.size(), 0);
+      }
+      objects.push_back(made);
+    }
+    root_["extensionsUsed"].push_back(gltf_features_extension);
+    root_["extensions"][gltf_features_extension] = {{"version", gltf_features_version},
+                                                    {"objects", objects},
+                                                    {"scene", json::parse(write_scene_json(scene, names))}};
   }
 
   // Morph targets of a mesh, of which one after the other gets the weight 1.
@@ -326,6 +387,9 @@ class GltfDocument {
   std::string bytes_;
   std::vector<std::string> notes_;
   json channels_ = json::array(), samplers_ = json::array();  ///< of the animation
+  bool features_;
+  std::map<const FeatureTexture*, std::vector<std::size_t>> feature_textures_;
+  std::map<const BakedObject*, json> object_sets_;  ///< the sets of each object in the extension
 };
 
 // Whether a file is one that write_gltf() made.
@@ -341,15 +405,17 @@ bool is_own(const fs::path& file) {
 
 }  // namespace
 
-ExportReport write_gltf(const Scene& scene, const fs::path& file, const ExportOptions& options,
-                        const Progress& progress) {
+namespace {
+
+ExportReport write_glb(const Scene& scene, const fs::path& file, const ExportOptions& options, const Progress& progress,
+                       bool features) {
   if (options.layout) throw FieldError("layout", "does not apply to glTF files; leave it out");
   if (options.page_side) throw FieldError("page_size", "does not apply to glTF files; leave it out");
   if (file.extension() != ".glb") throw FieldError("out", "must end in .glb, the extension of binary glTF files");
   options.sources.check_file(file);
   if (std::error_code error; fs::exists(file, error) && fs::file_size(file, error) > 0 && !is_own(file))
     throw FileError(file, "exists and is not a glTF file of Rebake, so it is not replaced; choose another name");
-  const GltfDocument document(scene, progress);
+  const GltfWriter document(scene, features, progress);
   write_file_atomically(file, document.glb(), options.sources);
   ExportReport report;
   report.notes = document.notes();
@@ -357,6 +423,29 @@ ExportReport write_gltf(const Scene& scene, const fs::path& file, const ExportOp
     if (placed.node->object && !placed.visible)
       report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
   if (scene.light) report.notes.emplace_back("light that follows edits is not part of the colours, which are as baked");
+  return report;
+}
+
+}  // namespace
+
+ExportReport write_gltf(const Scene& scene, const fs::path& file, const ExportOptions& options,
+                        const Progress& progress) {
+  return write_glb(scene, file, options, progress, false);
+}
+
+ExportReport write_gltf_features(const Scene& scene, const fs::path& file, const ExportOptions& options,
+                                 const Progress& progress) {
+  ExportReport report = write_glb(visible_part(scene), file, options, progress, true);
+  report.preserves_scene = true;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (placed.node->object && !placed.visible) {
+      report.preserves_scene = false;
+      report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
+    }
+    if (placed.node->object && !placed.node->object->bodies.empty() && scene.light)
+      report.notes.push_back(fmt::format(
+          "the unedited shape of \"{}\", which light needs, is not exported; save keeps it", placed.node->name));
+  }
   return report;
 }
 

@@ -14,4 +14,9 @@ namespace rebake {
 ExportReport write_gltf(const Scene& scene, const std::filesystem::path& file, const ExportOptions& options,
                         const Progress& progress);
 
+/// As write_gltf(), and carries the features, decoders, exact geometry and the whole scene in an extension, so that
+/// read_gltf_features() gives the same scene. Its textures are those of the objects, not packed.
+ExportReport write_gltf_features(const Scene& scene, const std::filesystem::path& file, const ExportOptions& options,
+                                 const Progress& progress);
+
 }  // namespace rebake

@@ -191,10 +191,17 @@ class SceneReader {
   SceneReader(fs::path folder, const Progress& progress)
       : folder_(std::move(folder)), name_(folder_ / "scene.json"), progress_(progress) {}
 
-  Scene run() {
+  // For a scene whose objects are not in folders.
+  SceneReader(fs::path name, std::function<std::shared_ptr<const BakedObject>(const std::string&)> object_of,
+              const Progress& progress)
+      : name_(std::move(name)), progress_(progress), object_of_(std::move(object_of)) {}
+
+  Scene run() { return run(read_file(name_)); }
+
+  Scene run(const std::string& text) {
     const json root = [&] {
       try {
-        return json::parse(read_file(name_));
+        return json::parse(text);
       } catch (const json::exception& error) {
         throw FileError(name_, std::string("is not valid JSON: ") + error.what());
       }
@@ -264,6 +271,7 @@ class SceneReader {
 
   std::shared_ptr<const BakedObject> read_object(const json& value, const std::string& node) {
     const auto folder = value.at("folder").get<std::string>();
+    if (object_of_) return object_of_(folder);
     const auto read = read_folder(folder, value.value("axes", "360"));
     if (!value.contains("bodies")) return read;
     const json& bodies = value.at("bodies");
@@ -324,6 +332,7 @@ class SceneReader {
   fs::path folder_;
   fs::path name_;
   const Progress& progress_;
+  std::function<std::shared_ptr<const BakedObject>(const std::string&)> object_of_;  ///< null: objects are in folders
   std::map<std::string, std::shared_ptr<const BakedObject>> objects_;  ///< unedited objects, by folder and axes
   std::map<std::string, std::shared_ptr<const BakedObject>> edited_;  ///< objects with bodies, by members of their node
   std::map<std::string, std::shared_ptr<const FeatureTexture>> texels_;  ///< textures, by size and hash of their files
@@ -358,6 +367,12 @@ std::string write_scene_json(const Scene& scene, const std::map<const BakedObjec
   if (!scene.camera_keys.empty()) root["camera_keyframes"] = camera_keys_json(scene.camera_keys);
   for (const NodePtr& node : scene.roots) root["nodes"].push_back(node_json(*node, folder_of, with_bodies));
   return root.dump(1) + '\n';
+}
+
+Scene read_scene_json(const std::string& text, const fs::path& name,
+                      const std::function<std::shared_ptr<const BakedObject>(const std::string&)>& object_of) {
+  const Progress silent;
+  return SceneReader(name, object_of, silent).run(text);
 }
 
 Scene read_scene_folder(const fs::path& folder, const Progress& progress) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/progress.h"
@@ -10,6 +11,11 @@ namespace rebake {
 
 /// Reads scene.json and the object folders that it names. Throws FileError.
 Scene read_scene_folder(const std::filesystem::path& folder, const Progress& progress = {});
+
+/// Reads a scene from the text of scene.json whose objects are elsewhere: `object_of` gives that of a folder name.
+/// `name`: for messages. Throws FileError.
+Scene read_scene_json(const std::string& text, const std::filesystem::path& name,
+                      const std::function<std::shared_ptr<const BakedObject>(const std::string&)>& object_of);
 
 /// Writes a scene to `out` without conversion: scene.json, and one MobileNeRF folder per distinct object. If the
 /// scene's light follows edits, the bodies on which light was baked are written too, as folders of their own. Returns

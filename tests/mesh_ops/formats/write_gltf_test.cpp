@@ -11,7 +11,9 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/features/distill/diffuse_network.h"
 #include "mesh_ops/features/distill/mean_colors.h"
+#include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/meshes/gltf_scene.h"
+#include "mesh_ops/formats/mobilenerf/feature_png.h"
 #include "mesh_ops/formats/motion_samples.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/motion/scene_at.h"
@@ -190,6 +192,85 @@ TEST_F(WriteGltf, ReplacesOnlyItsOwnFiles) {
   EXPECT_THROW(write_gltf(document_.scene(), path("c.gltf"), {}, {}), FieldError);
   EXPECT_THROW(write_gltf({}, path("c.glb"), {}, {}), EditError);
   EXPECT_THROW(write_gltf(document_.scene(), path("c.glb"), {.layout = Layout::split, .sources = {}}, {}), FieldError);
+}
+
+// Two objects that share nothing, the second one bent, with keyframes, views, a group and a stored background.
+class GltfFeatures : public DocumentTest {
+ protected:
+  GltfFeatures() {
+    import(document_);
+    act(document_, R"({"op": "bend", "node": "ball", "degrees": 60})");
+    act(document_,
+        R"({"op": "transform", "node": "ball", "translate": [5e5, 0.1, 0], "rotate": {"axis": [1, 2, 3], "degrees": 33}})");
+    act(document_, json{{"op", "import"}, {"path", path("sources/ball").string()}, {"as", "other"}});
+    act(document_, R"({"op": "duplicate", "node": "other", "as": "copy"})");
+    act(document_, R"({"op": "group", "nodes": ["ball", "copy"], "as": "all"})");
+    act(document_, R"({"op": "view", "name": "front", "camera": {"eye": [0, 0, 4], "target": [0, 0, 0]}})");
+    act(document_, R"({"op": "background", "color": [0.1, 0.2, 0.3]})");
+    act(document_, R"({"op": "key", "node": "other", "time": 1, "position": [1, 0, 0]})");
+  }
+  Document document_;
+};
+
+TEST_F(GltfFeatures, TheSameSceneIsReadBack) {
+  const ExportReport report = write_gltf_features(document_.scene(), path("a.glb"), {}, {});
+  EXPECT_TRUE(report.preserves_scene);
+  const Scene read = read_any(path("a.glb"), {});
+  const Scene& scene = document_.scene();
+  EXPECT_EQ(read.views, scene.views);
+  EXPECT_EQ(read.background, scene.background);
+  const auto before = placed_nodes(scene), after = placed_nodes(read);
+  ASSERT_EQ(before.size(), after.size());
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    EXPECT_EQ(after[k].node->name, before[k].node->name);
+    EXPECT_EQ(after[k].node->to_parent.matrix(), before[k].node->to_parent.matrix());
+    ASSERT_EQ(after[k].node->object != nullptr, before[k].node->object != nullptr);
+    if (!before[k].node->object) continue;
+    const BakedObject &was = *before[k].node->object, &is = *after[k].node->object;
+    EXPECT_EQ(*is.decoder, *was.decoder);
+    ASSERT_EQ(is.sets.size(), was.sets.size());
+    for (std::size_t s = 0; s < was.sets.size(); ++s) {
+      EXPECT_EQ(is.sets[s].soup.positions(), was.sets[s].soup.positions());
+      EXPECT_EQ(is.sets[s].soup.uvs(), was.sets[s].soup.uvs());
+      EXPECT_EQ(is.sets[s].soup.faces(), was.sets[s].soup.faces());
+      ASSERT_EQ(is.sets[s].soup.rotations() != nullptr, was.sets[s].soup.rotations() != nullptr);
+      for (const int image : {0, 1})
+        EXPECT_EQ(write_feature_png(*is.sets[s].texels, image), write_feature_png(*was.sets[s].texels, image));
+    }
+  }
+  EXPECT_EQ(*find(read, "other")->motion, *find(scene, "other")->motion);
+  EXPECT_EQ(find(read, "other")->object, find(read, "copy")->object) << "copies share their data";
+  // A second round gives the same bytes.
+  write_gltf_features(read, path("b.glb"), {}, {});
+  EXPECT_EQ(read_file(path("a.glb")).size(), read_file(path("b.glb")).size());
+}
+
+TEST_F(GltfFeatures, HiddenNodesAreLeftOutWithANote) {
+  act(document_, R"({"op": "hide", "node": "copy"})");
+  const ExportReport report = write_gltf_features(document_.scene(), path("a.glb"), {}, {});
+  EXPECT_FALSE(report.preserves_scene);
+  EXPECT_NE(report.notes.back().find("hidden node \"copy\""), std::string::npos) << report.notes.back();
+  EXPECT_EQ(find(read_any(path("a.glb"), {}), "copy"), nullptr);
+}
+
+TEST_F(GltfFeatures, DamageIsNamed) {
+  write_gltf_features(document_.scene(), path("a.glb"), {}, {});
+  const std::string bytes = read_file(path("a.glb"));
+  for (const auto& [what, by] : {std::pair("\"version\":1", "\"version\":7"),
+                                 {"\"rule\":\"network\"", "\"rule\":\"notwork\""},
+                                 {"\"faces\":", "\"facez\":"}}) {
+    std::string damaged = bytes;
+    const std::size_t at = damaged.find(what);
+    ASSERT_NE(at, std::string::npos) << what;
+    damaged.replace(at, std::string(what).size(), by);
+    write_text(path("damaged.glb"), damaged);
+    try {
+      read_any(path("damaged.glb"), {});
+      ADD_FAILURE() << what;
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("damaged.glb"), std::string::npos) << error.what();
+    }
+  }
 }
 
 }  // namespace
