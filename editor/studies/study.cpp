@@ -18,29 +18,6 @@ namespace rebake {
 
 namespace {
 
-Image enlarged(const Image& image, int width, int height) {
-  Image result{width, height, {}};
-  const auto coordinate = [](int to, int to_size, int from_size) {
-    return std::clamp((to + 0.5) * from_size / to_size - 0.5, 0.0, from_size - 1.0);
-  };
-  const auto at = [&](int x, int y, int c) {
-    const int column = std::min(x, image.width - 1), row = std::min(y, image.height - 1);
-    return static_cast<double>(image.rgb[static_cast<std::size_t>((row * image.width + column) * 3 + c)]);
-  };
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const double u = coordinate(x, width, image.width), v = coordinate(y, height, image.height);
-      const int left = static_cast<int>(u), top = static_cast<int>(v);
-      const double right = u - left, down = v - top;
-      for (int c = 0; c < 3; ++c) {
-        const double upper = std::lerp(at(left, top, c), at(left + 1, top, c), right);
-        const double lower = std::lerp(at(left, top + 1, c), at(left + 1, top + 1, c), right);
-        result.rgb.push_back(static_cast<std::uint8_t>(std::lround(std::lerp(upper, lower, down))));
-      }
-    }
-  return result;
-}
-
 // Runs gnuplot on a script and returns its output. Throws Error if gnuplot fails.
 std::string run_gnuplot(const std::string& script) {
   std::string name = (std::filesystem::temp_directory_path() / "rebake-plot-XXXXXX").string();
@@ -70,6 +47,29 @@ StudyTable picture_table() {
           1,
           false,
           false};
+}
+
+Image enlarged(const Image& image, int width, int height) {
+  Image result{width, height, {}, {}};
+  const auto coordinate = [](int to, int to_size, int from_size) {
+    return std::clamp((to + 0.5) * from_size / to_size - 0.5, 0.0, from_size - 1.0);
+  };
+  const auto at = [&](int x, int y, int c) {
+    const int column = std::min(x, image.width - 1), row = std::min(y, image.height - 1);
+    return static_cast<double>(image.rgb[static_cast<std::size_t>((row * image.width + column) * 3 + c)]);
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      const double u = coordinate(x, width, image.width), v = coordinate(y, height, image.height);
+      const int left = static_cast<int>(u), top = static_cast<int>(v);
+      const double right = u - left, down = v - top;
+      for (int c = 0; c < 3; ++c) {
+        const double upper = std::lerp(at(left, top, c), at(left + 1, top, c), right);
+        const double lower = std::lerp(at(left, top + 1, c), at(left + 1, top + 1, c), right);
+        result.rgb.push_back(static_cast<std::uint8_t>(std::lround(std::lerp(upper, lower, down))));
+      }
+    }
+  return result;
 }
 
 StudyTable::Row measured(const StudyInput& input, const std::string& choice, const View& view,

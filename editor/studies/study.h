@@ -57,6 +57,7 @@ StudyTable study_register(const StudyInput& input);
 StudyTable study_colors(const StudyInput& input);
 StudyTable study_fill(const StudyInput& input);
 StudyTable study_filtering(const StudyInput& input);
+StudyTable study_publish(const StudyInput& input);
 
 /// All studies, in the order of `rebake study --help`.
 inline constexpr Study study_table[] = {
@@ -74,6 +75,7 @@ inline constexpr Study study_table[] = {
     {"register", "registration of captures: overlap, outliers and error", study_register},
     {"colors", "matching of two captures' colours: exposure, samples and error", study_colors},
     {"filtering", "linear filtering by finer textures: memory, error of colours, frame time", study_filtering},
+    {"publish", "web pages: position bits, texture coding and moving resolution; size, error, time", study_publish},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
 
@@ -84,6 +86,9 @@ StudyTable picture_table();
 /// size is resized bilinearly first.
 StudyTable::Row measured(const StudyInput& input, const std::string& choice, const View& view,
                          const RenderOptions& options, const Image& reference);
+
+/// A picture of another size, interpolated bilinearly.
+Image enlarged(const Image& image, int width, int height);
 
 /// Median time of `repeats` runs in milliseconds.
 double median_milliseconds(int repeats, const std::function<void()>& run);

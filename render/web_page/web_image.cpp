@@ -38,11 +38,12 @@ std::string as_webp(int width, int height, const std::vector<std::uint8_t>& rgba
 
 }  // namespace
 
-WebImage web_image(int width, int height, const std::vector<std::uint8_t>& rgba) {
-  std::string webp = as_webp(width, height, rgba);
+WebImage web_image(int width, int height, const std::vector<std::uint8_t>& rgba, WebImageCoding coding) {
+  std::string webp = coding == WebImageCoding::png ? std::string() : as_webp(width, height, rgba);
   // PNG wins only for images of few texels, which are quick to compress.
   constexpr std::size_t always_smaller = 1 << 20;
-  if (!webp.empty() && rgba.size() > always_smaller) return {std::move(webp), "webp"};
+  if (!webp.empty() && (rgba.size() > always_smaller || coding == WebImageCoding::webp))
+    return {std::move(webp), "webp"};
   std::string png;
   PngEncoder encoder(width, height, 4, png_level, [&](std::string_view piece) { png.append(piece); });
   encoder.write_rows(rgba);

@@ -167,7 +167,7 @@ WebMesh web_mesh(const PreparedSurface& surface, double step, const LightMap* li
   return mesh;
 }
 
-WebTexels web_texels(const PreparedSurface& surface) {
+WebTexels web_texels(const PreparedSurface& surface, WebImageCoding coding) {
   const TexelPacking& packing = *surface.packing;
   const TexelReader texels(*surface.source.texels);
   std::vector<Texel> filled;
@@ -180,8 +180,8 @@ WebTexels web_texels(const PreparedSurface& surface) {
     bytes[1].insert(bytes[1].end(), shown.feat1.begin(), shown.feat1.end());
   }
   WebTexels made{{}, {}, packing.width, packing.height};
-  tbb::parallel_invoke([&] { made.image0 = web_image(packing.width, packing.height, bytes[0]); },
-                       [&] { made.image1 = web_image(packing.width, packing.height, bytes[1]); });
+  tbb::parallel_invoke([&] { made.image0 = web_image(packing.width, packing.height, bytes[0], coding); },
+                       [&] { made.image1 = web_image(packing.width, packing.height, bytes[1], coding); });
   return made;
 }
 

@@ -27,7 +27,7 @@ struct WebTexels {
   WebImage image0, image1;
   int width = 0, height = 0;
 };
-WebTexels web_texels(const PreparedSurface& surface);
+WebTexels web_texels(const PreparedSurface& surface, WebImageCoding coding);
 
 /// Compresses bytes in the format gzip (RFC 1952), which browsers unpack by DecompressionStream.
 std::string gzipped(std::string_view bytes);

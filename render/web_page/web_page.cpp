@@ -250,7 +250,7 @@ class Publisher {
     const WebMesh mesh = web_mesh(surface, step_of(draw), draw.light.get(), set);
     triangles_ += mesh.triangles;
     set["mesh"] = add_file(fmt::format("mesh{}.gz", number), mesh.bytes);
-    WebTexels texels = web_texels(surface);
+    WebTexels texels = web_texels(surface, options_.coding);
     set["texels"] = {{"width", texels.width}, {"height", texels.height}};
     for (const auto& [image, texel_image] : {std::pair(0, &texels.image0), {1, &texels.image1}})
       set["texels"]["images"].push_back(

@@ -9,6 +9,7 @@
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/light/lighting.h"
 #include "mesh_ops/scene/scene.h"
+#include "render/web_page/web_image.h"
 
 namespace rebake {
 
@@ -22,10 +23,11 @@ struct WebPageOptions {
   /// camera, at the point nearest to it.
   double steps_per_pixel = 256;
   int home_height = 800;
-  bool single_file = false;                       ///< everything in index.html, which then works without a server
-  bool transparent = false;                       ///< no background: an embedding page shows through
-  std::map<std::string, std::string> thumbnails;  ///< PNGs of views, by name
-  std::string poster;                             ///< PNG of `home`, shown until the scene is loaded; empty: none
+  WebImageCoding coding = WebImageCoding::smaller;  ///< of textures
+  bool single_file = false;                         ///< everything in index.html, which then works without a server
+  bool transparent = false;                         ///< no background: an embedding page shows through
+  std::map<std::string, std::string> thumbnails;    ///< PNGs of views, by name
+  std::string poster;                               ///< PNG of `home`, shown until the scene is loaded; empty: none
 };
 
 /// A scene in the colours of its lighting.
