@@ -24,16 +24,16 @@ TIMED = """(() => {
 
 def publish(program, scene, folder):
     """Publishes a scene and returns the bytes of its data and of its code."""
-    subprocess.run([program, "publish", scene, "-o", folder], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run([program, "publish", scene, "-o", folder, "--poster"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     sizes = {"data": 0, "code": 0}
     for place, _, names in os.walk(folder):
         for name in names:
-            sizes["data" if os.path.basename(place) == "data" else "code"] += os.path.getsize(os.path.join(place, name))
+            sizes["data" if os.path.basename(place) == "data" or name == "poster.png" else "code"] += os.path.getsize(os.path.join(place, name))
     return sizes["data"], sizes["code"]
 
 
 def measure_page(folder, camera, size, frames):
-    """Milliseconds: until all is drawn, a frame at rest and a frame while turning (medians). `camera`: the options of
+    """Milliseconds: until the poster is there, until all is drawn, a frame at rest and a frame while turning (medians). `camera`: the options of
     `rebake render`."""
     words = dict(zip(camera[::2], camera[1::2]))
     vector = lambda name: [float(x) for x in words[name].split(",")]
@@ -45,6 +45,7 @@ def measure_page(folder, camera, size, frames):
         browser.size(width, height)
         browser.open(server.url)
         load = browser.evaluate("viewer.ready.then(() => performance.now())")
+        first = browser.evaluate("performance.getEntriesByType('resource').find((e) => e.name.endsWith('poster.png')).responseEnd")
         browser.evaluate(f"viewer.setView({json.dumps(view)})")
         times = [statistics.median(browser.evaluate(TIMED % (frames, call)))
                  for call in (f"drawAtRest(viewer.camera, {width}, {height}, null)",
@@ -54,4 +55,4 @@ def measure_page(folder, camera, size, frames):
     finally:
         browser.close()
         server.close()
-    return {"load": load, "rest": times[0], "turning": times[1]}
+    return {"first": first, "load": load, "rest": times[0], "turning": times[1]}

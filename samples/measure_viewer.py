@@ -108,7 +108,7 @@ def camera_of(report):
 
 
 def measure_viewer(page, scene, build, rounds=3):
-    """Medians in ms by name ("frame", "load") as (Rebake, page), those of the page that Rebake publishes ("load", "rest",
+    """Medians in ms by name ("frame", "load") as (Rebake, page), those of the page that Rebake publishes ("first", "load", "rest",
     "turning"; and "data", "code" in bytes), the PSNR between both pictures in dB (None: equal), and the size of the picture in
     pixels."""
     program = os.path.join(build, "rebake")
@@ -121,7 +121,7 @@ def measure_viewer(page, scene, build, rounds=3):
             sys.exit(f"{path} does not exist")
     info = json.loads(subprocess.run([program, "info", scene, "--json"], check=True, stdout=subprocess.PIPE).stdout)
     expected = {"triangles": info["triangles"], "images": 2 * info["texture_sets"], "frames": FRAMES}
-    own, other, published = {"frame": [], "load": []}, {"frame": [], "load": []}, {"load": [], "rest": [], "turning": []}
+    own, other, published = {"frame": [], "load": []}, {"frame": [], "load": []}, {"first": [], "load": [], "rest": [], "turning": []}
     with tempfile.TemporaryDirectory() as out:
         folder = os.path.join(out, "published")
         data, code = publish(program, scene, folder)

@@ -9,6 +9,7 @@
 
 #include "render/graph/changed_pixels.h"
 #include "render/passes/decoder_glsl.h"
+#include "render/passes/gloss_uniforms.h"
 
 namespace rebake {
 
@@ -202,13 +203,6 @@ void set_mesh_uniforms(const PassInput& input, const Draw& draw, const gl::Progr
 
 namespace {
 
-// Normalisation constants of real spherical harmonics, which the polynomials in gloss.glsl omit.
-constexpr std::array<double, sh::count> harmonic_constants{
-    0.28209479177387814, 0.4886025119029199, 0.4886025119029199,  0.4886025119029199,
-    1.0925484305920792,  1.0925484305920792, 0.31539156525252005, 1.0925484305920792,
-    0.5462742152960396,  0.5900435899266435, 2.890611442640554,   0.4570457994644658,
-    0.3731763325901154,  0.4570457994644658, 1.445305721320277,   0.5900435899266435};
-
 void bind_gloss(const GpuLight& light, const Gloss& gloss, const gl::Program& program) {
   const gl::Texture* const textures[] = {&light.gloss_before, &light.gloss_after, &light.gloss_suns};
   const char* const names[] = {"gloss_before", "gloss_after", "gloss_suns"};
@@ -217,22 +211,12 @@ void bind_gloss(const GpuLight& light, const Gloss& gloss, const gl::Program& pr
     glBindTexture(GL_TEXTURE_2D, textures[k]->name());
     set_uniform(program, names[k], 8 + k);
   }
-  std::array<glm::vec3, sh::count> sky;
-  for (std::size_t k = 0; k < sky.size(); ++k)
-    for (int c = 0; c < 3; ++c)
-      sky[k][c] = static_cast<float>(harmonic_constants[k] *
-                                     gloss.sky[static_cast<std::size_t>(c)][static_cast<Eigen::Index>(k)]);
-  glUniform3fv(location(program, "gloss_sky"), sh::count, glm::value_ptr(sky[0]));
-  std::array<glm::vec3, Gloss::max_suns> directions{}, lights{};
-  for (std::size_t k = 0; k < gloss.suns.size(); ++k)
-    for (int c = 0; c < 3; ++c) {
-      directions[k][c] = static_cast<float>(gloss.suns[k].direction[c]);
-      lights[k][c] = static_cast<float>(gloss.suns[k].irradiance[c]);
-    }
-  glUniform3fv(location(program, "gloss_sun_direction"), Gloss::max_suns, glm::value_ptr(directions[0]));
-  glUniform3fv(location(program, "gloss_sun_light"), Gloss::max_suns, glm::value_ptr(lights[0]));
-  set_uniform(program, "gloss_sun_count", static_cast<int>(gloss.suns.size()));
-  set_uniform(program, "gloss_sharpness", static_cast<float>(gloss.sharpness));
+  const GlossUniforms values = gloss_uniforms(gloss);
+  glUniform3fv(location(program, "gloss_sky"), sh::count, values.sky[0].data());
+  glUniform3fv(location(program, "gloss_sun_direction"), Gloss::max_suns, values.directions[0].data());
+  glUniform3fv(location(program, "gloss_sun_light"), Gloss::max_suns, values.lights[0].data());
+  set_uniform(program, "gloss_sun_count", values.suns);
+  set_uniform(program, "gloss_sharpness", values.sharpness);
 }
 
 }  // namespace

@@ -185,14 +185,36 @@ WebTexels web_texels(const PreparedSurface& surface, WebImageCoding coding) {
   return made;
 }
 
+namespace {
+
+void put_half(std::string& bytes, float value) {
+  const std::uint16_t bits = Eigen::half(value).x;
+  bytes += static_cast<char>(bits & 255U);
+  bytes += static_cast<char>(bits >> 8U);
+}
+
+}  // namespace
+
 std::string web_light_texels(const LightChart& chart, const std::vector<Eigen::Vector3f>& values) {
   std::string bytes;
   for (std::size_t k = 0; k < chart.texel_count(); ++k)
-    for (int c = 0; c < 4; ++c) {
-      const std::uint16_t bits = Eigen::half(c < 3 ? values[k][c] : 1.0F).x;
-      bytes += static_cast<char>(bits & 255U);
-      bytes += static_cast<char>(bits >> 8U);
-    }
+    for (int c = 0; c < 4; ++c) put_half(bytes, c < 3 ? values[k][c] : 1.0F);
+  return gzipped(bytes);
+}
+
+std::string web_gloss_normals(const std::vector<Eigen::Vector4f>& normals) {
+  std::string bytes;
+  for (const Eigen::Vector4f& normal : normals)
+    for (int c = 0; c < 4; ++c) put_half(bytes, normal[c]);
+  return gzipped(bytes);
+}
+
+std::string web_gloss_suns(const GlossMap& map) {
+  std::string bytes;
+  for (std::size_t k = 0; k < map.before.suns.size(); ++k) {
+    put_half(bytes, map.before.suns[k]);
+    put_half(bytes, map.after.suns[k]);
+  }
   return gzipped(bytes);
 }
 

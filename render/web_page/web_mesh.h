@@ -34,5 +34,8 @@ std::string gzipped(std::string_view bytes);
 
 /// Gains or offsets of a light map, 4 half floats per node, compressed.
 std::string web_light_texels(const LightChart& chart, const std::vector<Eigen::Vector3f>& values);
+/// One side of a gloss map, 4 half floats per node, and the sun amounts of both sides, 2 half floats per node.
+std::string web_gloss_normals(const std::vector<Eigen::Vector4f>& normals);
+std::string web_gloss_suns(const GlossMap& map);
 
 }  // namespace rebake

@@ -12,6 +12,7 @@
 #include "render/graph/effects.h"
 #include "render/graph/plan.h"
 #include "render/passes/decoder_glsl.h"
+#include "render/passes/gloss_uniforms.h"
 #include "render/web_page/page_text.h"
 #include "render/web_page/scene_motion.h"
 #include "render/web_page/web_mesh.h"
@@ -74,9 +75,11 @@ double grid_step(const Box& box, const Affine& to_world, const WebPageOptions& o
 struct Kind {
   bool turned = false;
   int lit = 0;  // 1: gain, 2: gain and offset
-  std::string name() const { return fmt::format("{}{}", turned ? "turned" : "plain", lit); }
+  bool glossy = false;
+  std::string name() const { return fmt::format("{}{}{}", turned ? "turned" : "plain", lit, glossy ? " glossy" : ""); }
   std::string defines() const {
-    return fmt::format("#define TURNED_MESH {}\n#define LIT_MESH {}\n#define GLOSSY_MESH 0\n", turned ? 1 : 0, lit);
+    return fmt::format("#define TURNED_MESH {}\n#define LIT_MESH {}\n#define GLOSSY_MESH {}\n#define GLOSS_SUNS {}\n",
+                       turned ? 1 : 0, lit, glossy ? 1 : 0, Gloss::max_suns);
   }
 };
 
@@ -96,8 +99,9 @@ class Publisher {
     for (const Draw& draw : plan.draws) {
       light_ = std::max(light_, light_of(draw));
       rays_ = rays_ || (draw.set.soup.rotations() != nullptr && plan.uses_view_direction);
-      glossy_ = glossy_ || (draw.light && draw.light->gloss);
+      glossy_ = glossy_ || is_glossy(draw);
     }
+    if (glossy_) light_ = 2;  // highlights are added
   }
 
   // Writes the scene's files. `motion`: keyframes, or null.
@@ -136,7 +140,8 @@ class Publisher {
         frames_ ? fmt::format("{} decoders or orientations", frame_list_.size()) : "one decoder and orientation");
     say("rotated rays", rays_, rays_ ? "edits rotated triangles" : "no triangle was rotated relative to its object");
     say("light maps", light_ > 0, light_ > 0 ? "light follows edits" : "light changes nothing");
-    if (glossy_) say("moving highlights", false, "the page does not draw them; light maps keep their diffuse part");
+    if (light_ > 0)
+      say("moving highlights", glossy_, glossy_ ? "specular surfaces were rotated" : "no rotated surface is specular");
     say("view direction", plan_.uses_view_direction,
         plan_.uses_view_direction ? "colours depend on it" : "no decoder depends on it");
     return said;
@@ -191,11 +196,12 @@ class Publisher {
             {"camera", !motion.cameras.empty()}};
   }
 
+  static bool is_glossy(const Draw& draw) { return draw.light && draw.light->gloss; }
   static int light_of(const Draw& draw) { return !draw.light ? 0 : draw.light->offset.empty() ? 1 : 2; }
 
   json draw_of(const Draw& draw, std::size_t number) {
     const Affine to_world = camera_to_world_ * draw.to_camera;
-    Kind kind{draw.set.soup.rotations() != nullptr && plan_.uses_view_direction, light_of(draw)};
+    Kind kind{draw.set.soup.rotations() != nullptr && plan_.uses_view_direction, light_of(draw), is_glossy(draw)};
     kinds_[kind.name()] = kind;
     box_.extend(transformed(draw.set.soup.bounds(), to_world));
     json result = {{"set", set_of(draw, number)},
@@ -211,8 +217,27 @@ class Publisher {
       if (!draw.light->offset.empty())
         result["light"]["offset"] =
             add_file(fmt::format("light{}.offset.gz", number), web_light_texels(chart, draw.light->offset));
+      if (is_glossy(draw)) result["light"]["gloss"] = gloss_entry(*draw.light->gloss, number);
     }
     return result;
+  }
+
+  json gloss_entry(const GlossMap& map, std::size_t number) {
+    const GlossUniforms values = gloss_uniforms(*map.gloss);
+    const auto flat = [](const auto& vectors) {
+      json list = json::array();
+      for (const Eigen::Vector3f& v : vectors)
+        for (int c = 0; c < 3; ++c) list.push_back(v[c]);
+      return list;
+    };
+    return {{"before", add_file(fmt::format("light{}.before.gz", number), web_gloss_normals(map.before.normals))},
+            {"after", add_file(fmt::format("light{}.after.gz", number), web_gloss_normals(map.after.normals))},
+            {"suns", add_file(fmt::format("light{}.suns.gz", number), web_gloss_suns(map))},
+            {"sky", flat(values.sky)},
+            {"directions", flat(values.directions)},
+            {"lights", flat(values.lights)},
+            {"count", values.suns},
+            {"sharpness", values.sharpness}};
   }
 
   static bool share_a_set(const Draw& a, const Draw& b) {

@@ -289,6 +289,14 @@ class WebPage(unittest.TestCase):
         self.show(page)
         self.expect_picture_of(scene)
 
+    def test_moving_highlights(self):
+        scene = self.scene(KETTLE, {"op": "bend", "node": "kettle", "degrees": 60}, {"op": "light"})
+        page = self.publish(scene)
+        manifest = json.loads((page / "scene.json").read_text())
+        self.assertIn("carried moving highlights: specular surfaces were rotated", manifest["decisions"])
+        self.show(page)
+        self.expect_picture_of(scene)
+
     def test_far_from_the_origin(self):
         far = {**CAMERA, "eye": [1e6 + 0.9, 1.2, 3.2], "target": [1e6 + 0.1, -0.1, 0]}
         self.expect_page_of(self.scene(FICUS, {"op": "transform", "node": "ficus", "translate": [1e6, 0, 0]}), camera=far)

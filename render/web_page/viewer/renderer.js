@@ -47,7 +47,7 @@ export class Renderer {
     this.programs = new Map();
     /** @type {(GpuSet | null)[]} */
     this.sets = scene.sets.map(() => null);
-    /** @type {({gain: WebGLTexture, offset: WebGLTexture | null} | null)[]} */
+    /** @type {({gain: WebGLTexture, offset: WebGLTexture | null, gloss: WebGLTexture[] | null} | null)[]} */
     this.lights = scene.draws.map(() => null);
     /** @type {Map<string, Target>} */
     this.targets = new Map();
@@ -79,13 +79,15 @@ export class Renderer {
     const light = this.scene.draws[number].light;
     if (!light) return;
     const gl = this.gl;
-    /** @param {import('./scene.js').FileEntry} entry */
-    const upload = async (entry) => {
-      const values = await loadLight(light, entry, received), texture = this.texture(gl.RGBA16F, light.width, light.height, gl.LINEAR);
-      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, light.width, light.height, gl.RGBA, gl.HALF_FLOAT, values);
+    /** @param {import('./scene.js').FileEntry} entry @param {number} channels */
+    const upload = async (entry, channels = 4) => {
+      const values = await loadLight(light, entry, channels, received);
+      const texture = this.texture(channels === 4 ? gl.RGBA16F : gl.RG16F, light.width, light.height, gl.LINEAR);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, light.width, light.height, channels === 4 ? gl.RGBA : gl.RG, gl.HALF_FLOAT, values);
       return texture;
     };
-    this.lights[number] = {gain: await upload(light.gain), offset: light.offset ? await upload(light.offset) : null};
+    this.lights[number] = {gain: await upload(light.gain), offset: light.offset ? await upload(light.offset) : null,
+      gloss: light.gloss ? [await upload(light.gloss.before), await upload(light.gloss.after), await upload(light.gloss.suns, 2)] : null};
   }
 
   /** @param {number} format @param {number} width @param {number} height @param {number} filter */
@@ -262,11 +264,12 @@ export class Renderer {
       gl.useProgram(program.program);
       gl.uniformMatrix4fv(program.at('object_to_clip'), false, columns(matrix, 4));
       this.bind(program, 'features', 0, set.texels);
-      if (set.mesh.rotations) this.setRotations(camera, program, draw, toCamera);
+      if (set.mesh.rotations || draw.light?.gloss) this.setRotations(camera, program, draw, toCamera);
       if (draw.light && light) {
         gl.uniform2f(program.at('light_size'), draw.light.width, draw.light.height);
         this.bind(program, 'light_gain', 2, light.gain);
         if (light.offset) this.bind(program, 'light_offset', 3, light.offset);
+        if (draw.light.gloss && light.gloss) this.setGloss(program, draw.light.gloss, light.gloss);
       }
       prepare(program, draw.frame);
       gl.bindVertexArray(set.array);
@@ -285,6 +288,17 @@ export class Renderer {
     gl.uniformMatrix3fv(program.at('camera_to_object'), false,
                         columns(multiply3(transposed3(draw.objectToFed), this.cameraToFed(camera, draw.frame)), 3));
     gl.uniformMatrix3fv(program.at('object_to_fed'), false, columns(draw.objectToFed, 3));
+  }
+
+  /** @param {Program} program @param {import('./scene.js').GlossEntry} gloss @param {WebGLTexture[]} textures */
+  setGloss(program, gloss, textures) {
+    const gl = this.gl;
+    ['gloss_before', 'gloss_after', 'gloss_suns'].forEach((name, k) => this.bind(program, name, 6 + k, textures[k]));
+    gl.uniform3fv(program.at('gloss_sky'), gloss.sky);
+    gl.uniform3fv(program.at('gloss_sun_direction'), gloss.directions);
+    gl.uniform3fv(program.at('gloss_sun_light'), gloss.lights);
+    gl.uniform1i(program.at('gloss_sun_count'), gloss.count);
+    gl.uniform1f(program.at('gloss_sharpness'), gloss.sharpness);
   }
 
   /**

@@ -5,7 +5,8 @@
  * @typedef {{name: string, bytes: number}} FileEntry
  * @typedef {{mesh: FileEntry, texels: {width: number, height: number, images: [FileEntry, FileEntry]}, vertices: number,
  *   triangles: number, step: number, texelSteps: number, origin: number[], streams: {name: string, count: number}[]}} SetEntry
- * @typedef {{width: number, height: number, gain: FileEntry, offset?: FileEntry}} LightEntry
+ * @typedef {{before: FileEntry, after: FileEntry, suns: FileEntry, sky: number[], directions: number[], lights: number[], count: number, sharpness: number}} GlossEntry
+ * @typedef {{width: number, height: number, gain: FileEntry, offset?: FileEntry, gloss?: GlossEntry}} LightEntry
  * @typedef {{set: number, frame: number, kind: string, toWorld: number[], objectToFed: number[], light?: LightEntry}} DrawEntry
  * @typedef {{decoder: number, worldToDecoder: number[], alpha: [number, number]}} FrameEntry
  * @typedef {{draws: DrawEntry[], sets: SetEntry[], frames: FrameEntry[], home: import('./linear.js').Camera,
@@ -108,11 +109,11 @@ export async function pictureAddress(entry) {
 
 /**
  * Half floats of a light map.
- * @param {LightEntry} light @param {FileEntry} entry @param {(bytes: number) => void} received
+ * @param {LightEntry} light @param {FileEntry} entry @param {number} channels @param {(bytes: number) => void} received
  */
-export async function loadLight(light, entry, received) {
+export async function loadLight(light, entry, channels, received) {
   const bytes = await unpacked(entry, received);
-  if (bytes.length !== 8 * light.width * light.height) throw damaged(entry);
+  if (bytes.length !== 2 * channels * light.width * light.height) throw damaged(entry);
   return new Uint16Array(bytes.buffer);
 }
 
@@ -206,6 +207,7 @@ export async function loadMesh(set, received) {
 export function totalBytes(scene) {
   let bytes = 0;
   for (const set of scene.sets) bytes += set.mesh.bytes + set.texels.images[0].bytes + set.texels.images[1].bytes;
-  for (const {light} of scene.draws) if (light) bytes += light.gain.bytes + (light.offset ? light.offset.bytes : 0);
+  for (const {light} of scene.draws)
+    for (const entry of light ? [light.gain, light.offset, light.gloss?.before, light.gloss?.after, light.gloss?.suns] : []) bytes += entry?.bytes ?? 0;
   return bytes;
 }
