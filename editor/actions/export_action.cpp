@@ -4,6 +4,7 @@
 #include "editor/actions/lit.h"
 #include "editor/actions/plain_scene.h"
 #include "editor/actions/views.h"
+#include "editor/edits/stored_view.h"
 #include "editor/edits/support.h"
 
 #include <fmt/format.h>
@@ -119,6 +120,7 @@ void report_losses(Session& session, const Scene& scene, const ExportAction& act
 }
 
 void export_plain(Session& session, const Scene& scene, const ExportAction& action) {
+  if (!action.view.empty()) throw FieldError("view", "applies to glTF only");
   if (action.format.name != FormatName().name) throw FieldError("plain", "is available for the MobileNeRF format only");
   const FuseOptions options = fuse_options(scene, action);
   // Reports unwritable outputs before the long computation.
@@ -214,8 +216,15 @@ ExportReport write_export(Session& session, const ExportAction& action) {
   check_common(action);
   check_not_plain(action);
   const Format& format = format_named(action.format.name);
-  ExportReport report = format.write(with_only(session.scene(), action.nodes), action.out,
-                                     {action.layout, session.document.sources(), action.page_size}, session.progress);
+  std::optional<Vec3> eye;
+  if (!action.view.empty()) {
+    if (!action.format.name.starts_with("gltf"))
+      throw FieldError("view", "applies to glTF, whose colours do not depend on the view; leave it out");
+    eye = stored_view(session.scene(), action.view).eye;
+  }
+  ExportReport report =
+      format.write(with_only(session.scene(), action.nodes), action.out,
+                   {action.layout, session.document.sources(), action.page_size, eye}, session.progress);
   session.wrote_scene(action.out, true);
   return report;
 }
@@ -273,6 +282,8 @@ REBAKE_DESCRIBE_ACTION(
             "or that of the largest source texture");
       visit("picture_size", action.picture_size, Need::optional,
             "plain: side of the pictures for measuring, in pixels, 16 to 4096");
+      visit("view", action.view, Need::optional,
+            "gltf: colours as seen from this stored view; default: means over the directions that see them");
       visit("nodes", action.nodes, Need::optional, "only these nodes and their children; default: all");
     })
 

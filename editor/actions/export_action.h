@@ -24,6 +24,7 @@ struct ExportAction {
   std::string report;             ///< plain: JSON file for the measured errors; empty: none
   std::optional<int> page_size;   ///< maximum side of repacked textures, in texels; nothing: largest_page_side()
   int picture_size = 800;         ///< plain: side of the pictures for measuring, in pixels
+  std::string view;               ///< gltf: colours as seen from this stored view; empty: means
   std::vector<NodeRef> nodes;     ///< only these and their children; empty: all
 };
 template <>

@@ -17,6 +17,8 @@ struct ExportOptions {
   SourceGuard sources;           ///< files and folders that must not be overwritten
   /// Largest side of new textures in texels, 1 … 16384; empty: largest_page_side(). Rebake scenes ignore it.
   std::optional<int> page_side = std::nullopt;
+  /// For formats without view dependence: colours as seen from this point in world space; empty: means over directions.
+  std::optional<Vec3> colors_from = std::nullopt;
 };
 
 /// Result of writing a scene.

@@ -47,7 +47,8 @@ json column_major(const Matrix& m) {
 class GltfWriter {
  public:
   // `features`: also carries everything in an extension (gltf_features.h).
-  GltfWriter(const Scene& scene, bool features, const Progress& progress) : progress_(progress), features_(features) {
+  GltfWriter(const Scene& scene, bool features, const std::optional<Vec3>& eye, const Progress& progress)
+      : progress_(progress), features_(features), eye_(eye) {
     for (const PlacedNode& placed : placed_nodes(scene))
       if (placed.visible && placed.node->object) visible_.push_back(placed);
     if (visible_.empty()) throw EditError("there is nothing to export: no visible node has triangles");
@@ -189,7 +190,7 @@ class GltfWriter {
       progress_.at("averaging colours of " + node.name,
                    static_cast<double>(nodes.size()) / static_cast<double>(node.object->sets.size()));
       if (set.soup.triangle_count() == 0) continue;
-      const MeanColors colors = mean_colors(set, *placed, *rays_, size_, directions, loss);
+      const MeanColors colors = mean_colors(set, *placed, *rays_, size_, directions, loss, eye_);
       const Vec3 centre = set.soup.bounds().center();
       const std::size_t material = add_material(node.name, colors);
       const std::size_t mesh =
@@ -206,10 +207,10 @@ class GltfWriter {
                       "size from their places",
                       node.name, bends->poses.size(), bends->deviation / bends->rest->bounds().diagonal().norm()));
     notes_.push_back(
-        fmt::format("\"{}\" loses its view dependence: {:.1f} dB PSNR between its colours and their means, over "
+        fmt::format("\"{}\" loses its view dependence: {:.1f} dB PSNR between its colours and {}, over "
                     "{} directions where they are visible",
-                    node.name, loss.psnr_db(), directions));
-    if (loss.hidden > 0)
+                    node.name, loss.psnr_db(), eye_ ? "those from the given view" : "their means", directions));
+    if (loss.hidden > 0 && !eye_)
       notes_.push_back(
           fmt::format("{} triangles of \"{}\" are visible from no direction: their colours are means over all",
                       loss.hidden, node.name));
@@ -388,6 +389,7 @@ class GltfWriter {
   std::vector<std::string> notes_;
   json channels_ = json::array(), samplers_ = json::array();  ///< of the animation
   bool features_;
+  const std::optional<Vec3>& eye_;  ///< whose colours are taken; nothing: means
   std::map<const FeatureTexture*, std::vector<std::size_t>> feature_textures_;
   std::map<const BakedObject*, json> object_sets_;  ///< the sets of each object in the extension
 };
@@ -415,7 +417,7 @@ ExportReport write_glb(const Scene& scene, const fs::path& file, const ExportOpt
   options.sources.check_file(file);
   if (std::error_code error; fs::exists(file, error) && fs::file_size(file, error) > 0 && !is_own(file))
     throw FileError(file, "exists and is not a glTF file of Rebake, so it is not replaced; choose another name");
-  const GltfWriter document(scene, features, progress);
+  const GltfWriter document(scene, features, options.colors_from, progress);
   write_file_atomically(file, document.glb(), options.sources);
   ExportReport report;
   report.notes = document.notes();

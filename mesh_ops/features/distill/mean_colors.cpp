@@ -63,8 +63,9 @@ void dilate(std::vector<Sum>& sums, int width, int height) {
 class Averager {
  public:
   Averager(const TextureSet& set, const PlacedNode& placed, const SceneRays& rays, double scene_size,
-           std::size_t directions)
-      : set_(set),
+           std::size_t directions, const std::optional<Vec3>& eye)
+      : eye_(eye),
+        set_(set),
         placed_(placed),
         rays_(rays),
         texels_(*set.texels),
@@ -142,6 +143,11 @@ class Averager {
       total += eye.weight;
     }
     for (Color& mean : means) mean /= total;
+    if (eye_) {
+      const Vec3 direction = (*eye_ - (p[0] + p[1] + p[2]) / 3).stableNormalized();
+      const std::vector<Vec3> fed(places.size(), to_fed * (turn_.transpose() * -direction));
+      colors_.decode_each(features, fed, means);
+    }
     for (std::size_t e = 0; e < eyes.size(); ++e)
       for (std::size_t k = 0; k < places.size(); ++k)
         loss.squares += eyes[e].weight * (each[e][k] - means[k]).squaredNorm() / 3;
@@ -155,6 +161,7 @@ class Averager {
     }
   }
 
+  const std::optional<Vec3>& eye_;
   const TextureSet& set_;
   const PlacedNode& placed_;
   const SceneRays& rays_;
@@ -173,8 +180,8 @@ double MeanColorLoss::psnr_db() const {
 }
 
 MeanColors mean_colors(const TextureSet& set, const PlacedNode& placed, const SceneRays& rays, double scene_size,
-                       std::size_t directions, MeanColorLoss& loss) {
-  return Averager(set, placed, rays, scene_size, directions).run(loss);
+                       std::size_t directions, MeanColorLoss& loss, const std::optional<Vec3>& eye) {
+  return Averager(set, placed, rays, scene_size, directions, eye).run(loss);
 }
 
 }  // namespace rebake

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "mesh_ops/rays/scene_rays.h"
@@ -26,8 +27,10 @@ struct MeanColorLoss {
 /// Mean display colours of the texels of a node's set, over those of `directions` even directions from which the centre
 /// of their triangle is visible in `rays`; over all where none is. A direction counts by the area that the triangle has
 /// in pictures from there (the cosine to its normal). Texels beside a triangle, which lookups at its edge may fetch,
-/// get the colour of a neighbour. Adds to `loss`.
+/// get the colour of a neighbour. Adds to `loss`. With `eye`, a point in world space, colours are instead those along
+/// the direction from there to the triangle's centre, visible or not; `loss` then compares them with the colours along
+/// the directions.
 MeanColors mean_colors(const TextureSet& set, const PlacedNode& placed, const SceneRays& rays, double scene_size,
-                       std::size_t directions, MeanColorLoss& loss);
+                       std::size_t directions, MeanColorLoss& loss, const std::optional<Vec3>& eye = std::nullopt);
 
 }  // namespace rebake

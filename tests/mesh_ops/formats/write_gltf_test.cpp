@@ -195,6 +195,18 @@ TEST_F(WriteGltf, ReplacesOnlyItsOwnFiles) {
 }
 
 // Two objects that share nothing, the second one bent, with keyframes, views, a group and a stored background.
+TEST_F(WriteGltf, ColoursCanBeThoseOfAView) {
+  written(path("means.glb"));
+  const std::string means = report_.notes[0];
+  ExportOptions options;
+  options.colors_from = Vec3(0, 0, 40);
+  const ExportReport report = write_gltf(document_.scene(), path("view.glb"), options, {});
+  EXPECT_NE(report.notes[0].find("those from the given view"), std::string::npos) << report.notes[0];
+  // The means are the best constant colours.
+  const auto db = [](const std::string& note) { return std::stod(note.substr(note.find("dependence: ") + 12)); };
+  EXPECT_LT(db(report.notes[0]), db(means));
+}
+
 class GltfFeatures : public DocumentTest {
  protected:
   GltfFeatures() {
