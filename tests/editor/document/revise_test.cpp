@@ -82,7 +82,7 @@ TEST_F(Revise, RandomStepsSurviveUndoRecoveryAndEviction) {
       ASSERT_TRUE(exported(document.scene()) == after[at]) << "round " << round << ", step " << k;
     }
     ASSERT_TRUE(deformed);
-    document.save(path("p.rebake"));
+    document.save(path("p.rebake"), {}, Document::OtherProject::replace);
     Document opened = Document::open(path("p.rebake"));
     for (std::size_t k = at; k > 0; --k) {
       EXPECT_TRUE(exported(opened.scene()) == after[k]) << "a project keeps every step";
