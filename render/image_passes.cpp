@@ -1,6 +1,7 @@
 #include "render/image_passes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -19,7 +20,6 @@ namespace rebake {
 
 namespace {
 
-constexpr std::array<const char*, 7> known{"color", "alpha", "depth", "normal", "node", "position", "light"};
 constexpr float nothing_depth = 1e10F;
 
 std::array<float, 256> linear_table() {
@@ -199,10 +199,10 @@ class PassRenderer {
   std::size_t pixels_ = 0;
 };
 
-// Name of the layer of a channel: "depth" of "depth.Z", "color" of "R".
-std::string layer_of(const std::string& channel) {
+// Name of the layer of a channel: "depth" of "depth.Z", "color" of "R". Alpha is part of the colours, if there are any.
+std::string layer_of(const std::string& channel, bool colors) {
   const std::size_t dot = channel.find('.');
-  return dot == std::string::npos ? "color" : channel.substr(0, dot);
+  return dot != std::string::npos ? channel.substr(0, dot) : colors ? "color" : "alpha";
 }
 
 void write_channels(const ImagePasses& passes, const std::vector<const ImagePasses::Channel*>& channels,
@@ -232,8 +232,9 @@ const ImagePasses::Channel* ImagePasses::find(const std::string& name) const {
 
 void check_pass_names(const std::vector<std::string>& names) {
   for (const std::string& name : names)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw FieldError("passes", fmt::format("\"{}\" is not known (known: {})", name, ImagePassNames::list));
+    if (std::find(image_pass_names.begin(), image_pass_names.end(), name) == image_pass_names.end())
+      throw FieldError("passes",
+                       fmt::format("\"{}\" is not known (known: {})", name, fmt::join(image_pass_names, ", ")));
 }
 
 ImagePasses render_passes(Renderer& renderer, const Scene& scene, const View& view, const RenderOptions& options,
@@ -246,11 +247,23 @@ ImagePasses render_passes(Renderer& renderer, const Scene& scene, const View& vi
   return passes.take();
 }
 
+std::vector<std::filesystem::path> pass_files(const std::vector<std::string>& names,
+                                              const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> files;
+  const bool colors = std::find(names.begin(), names.end(), "color") != names.end();
+  for (const std::string& name : names) {
+    std::filesystem::path file = path;
+    file.replace_extension(fmt::format(".{}.exr", name));
+    if (name != "alpha" || !colors) files.push_back(file);
+  }
+  return files;
+}
+
 void write_passes(const ImagePasses& passes, const std::filesystem::path& path, bool separate,
                   const SourceGuard& guard) {
   std::map<std::string, std::vector<const ImagePasses::Channel*>> layers;
   for (const ImagePasses::Channel& channel : passes.channels)
-    layers[separate ? layer_of(channel.name) : ""].push_back(&channel);
+    layers[separate ? layer_of(channel.name, passes.find("R") != nullptr) : ""].push_back(&channel);
   for (const auto& [layer, channels] : layers) {
     std::filesystem::path file = path;
     if (separate) file.replace_extension(fmt::format(".{}.exr", layer));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -7,10 +8,9 @@
 
 namespace rebake {
 
-/// Data of a picture for compositing, beside its colours.
-struct ImagePassNames {
-  static constexpr const char* list = "color, alpha, depth, normal, node, position, light";
-};
+/// Names of the passes.
+inline constexpr std::array<const char*, 7> image_pass_names{"color", "alpha",    "depth", "normal",
+                                                             "node",  "position", "light"};
 
 /// Channels of a picture as floats.
 struct ImagePasses {
@@ -42,6 +42,10 @@ void check_pass_names(const std::vector<std::string>& names);
 /// their positions. Throws FieldError.
 ImagePasses render_passes(Renderer& renderer, const Scene& scene, const View& view, const RenderOptions& options,
                           const Lighting* lighting, const std::vector<std::string>& names);
+
+/// The files of passes that are written separately: picture.depth.exr, …; alpha is in that of the colours if both are
+/// written.
+std::vector<std::filesystem::path> pass_files(const std::vector<std::string>& names, const std::filesystem::path& path);
 
 /// The passes as one OpenEXR file, or as a file each beside `path` (picture.depth.exr). Throws FileError.
 void write_passes(const ImagePasses& passes, const std::filesystem::path& path, bool separate,

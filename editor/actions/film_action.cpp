@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <stdlib.h>
+
 #include <chrono>
 #include <thread>
 
@@ -41,9 +43,24 @@ void check_fields(const FilmAction& action) {
     throw FieldError("picture", "must be png, exr, webp or jpg");
   if (!action.content.passes.empty() && (video || action.picture != "exr"))
     throw FieldError("passes", "are written to OpenEXR pictures: name a folder, and set picture to exr");
-  if (action.content.separate) throw FieldError("separate", "does not apply to films: pictures hold all their passes");
   check(action.content, "picture." + action.picture, action.width, action.height);
 }
+
+// A file in a temporary folder, both removed at the end.
+struct TemporaryVideo {
+  explicit TemporaryVideo(const fs::path& extension) {
+    std::string name = (fs::temp_directory_path() / "rebake-video-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw FileError(name, "cannot be created");
+    file = fs::path(name) / ("video" + extension.string());
+  }
+  ~TemporaryVideo() {
+    std::error_code error;
+    fs::remove_all(file.parent_path(), error);
+  }
+  TemporaryVideo(const TemporaryVideo&) = delete;
+  TemporaryVideo& operator=(const TemporaryVideo&) = delete;
+  fs::path file;
+};
 
 // Renders and writes the pictures of a film.
 class Film {
@@ -65,7 +82,11 @@ class Film {
     // Also checks the size.
     const Scene first = has_keyframes(scene_) ? scene_at(scene_, 0) : scene_;
     start_ = resolve_view(first, action.camera, action.view, width_, height_, action.samples);
-    FilmPath path{action.path, action.fps, action.seconds, action.loop, start_.camera, session.scene().ground.normal};
+    // Planes that nobody gave are fitted to each picture.
+    Camera start = start_.camera;
+    if (!action.camera || action.camera->near_plane == 0 || action.camera->far_plane == 0)
+      start.near_plane = start.far_plane = 0;
+    FilmPath path{action.path, action.fps, action.seconds, action.loop, start, session.scene().ground.normal};
     std::vector<std::string> notes;
     frames_ = film_frames(scene_, path, fps_, notes);
     for (const std::string& note : notes) session.say("note: " + note);
@@ -78,7 +99,7 @@ class Film {
       refuse_replacing_work(action_.out);
       check_replaces_video();
     }
-    PictureFolder folder(pictures, video_ ? ".png" : "." + action_.picture, content(), sources_);
+    PictureFolder folder(pictures, video_ ? ".png" : "." + action_.picture, frames_.size(), content(), sources_);
     if (folder.removed() > 0)
       session_.say(
           fmt::format("note: {} pictures of an earlier film in {} were replaced", folder.removed(), pictures.string()));
@@ -100,9 +121,8 @@ class Film {
       ++drawn;
     }
     if (video_) {
-      encode(folder);
-      std::error_code error;
-      fs::remove_all(pictures, error);
+      encode(folder, pictures);
+      folder.remove();
     }
     session_.outputs.push_back(action_.out);
     session_.say(fmt::format("wrote {} pictures ({:.4g} s at {:.4g} per second) to {}", frames_.size(),
@@ -129,9 +149,8 @@ class Film {
   void check_replaces_video() const {
     std::error_code error;
     if (!fs::exists(action_.out, error) || fs::file_size(action_.out, error) == 0) return;
-    const std::string bytes = read_file(action_.out);
-    if (!std::string_view(bytes).substr(0, 64).starts_with("\x1a\x45\xdf\xa3") && bytes.substr(4, 4) != "ftyp")
-      throw FileError(action_.out, "exists and is not a video, so it is not replaced; choose another name");
+    if (read_file(action_.out).find(video_mark) == std::string::npos)
+      throw FileError(action_.out, "exists and is not a video of Rebake, so it is not replaced; choose another name");
   }
 
   void draw(const FilmFrame& frame, const fs::path& file) {
@@ -140,14 +159,18 @@ class Film {
     View view = start_;
     view.camera = fitted(moved, frame.camera, static_cast<double>(width_) / height_);
     check(view);
-    if (!lighting_ || has_keyframes(scene_)) lighting_ = lit(moved, session_.progress);
+    // Objects that are not drawn still cast shadows.
+    const bool moves = has_keyframes(session_.scene());
+    if (!lighting_ || moves)
+      lighting_ = lit(moves ? scene_at(session_.scene(), frame.seconds) : session_.scene(), session_.progress);
     render_to_file(session_.renderer(), moved, view, {}, &*lighting_, action_.content, file, sources_);
   }
 
-  void encode(const PictureFolder& folder) const {
-    const fs::path partial = folder.picture(0).parent_path() / ("00000" + fs::path(action_.out).extension().string());
-    ChildProcess encoder(
-        encoder_command({folder.pattern(), frames_.size(), fps_, action_.codec, action_.content.transparent, partial}));
+  void encode(const PictureFolder& folder, const fs::path& pictures) const {
+    // A file of its own outside of the pictures' folder, which holds nothing else.
+    const TemporaryVideo partial(fs::path(action_.out).extension());
+    ChildProcess encoder(encoder_command(
+        {folder.pattern(), frames_.size(), fps_, action_.codec, action_.content.transparent, partial.file}));
     std::optional<int> status;
     while (!(status = encoder.ended())) {
       session_.progress.at("encoding the video", 1);
@@ -155,8 +178,8 @@ class Film {
     }
     if (*status != 0)
       throw Error(fmt::format("ffmpeg failed with exit status {}; no video was written. Its pictures are in {}",
-                              *status, folder.picture(0).parent_path().string()));
-    write_file_atomically(action_.out, read_file(partial), sources_);
+                              *status, pictures.string()));
+    write_file_atomically(action_.out, read_file(partial.file), sources_);
   }
 
   Session& session_;

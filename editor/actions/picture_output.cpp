@@ -12,6 +12,11 @@
 
 namespace rebake {
 
+std::vector<std::filesystem::path> files_of(const PictureContent& content, const std::filesystem::path& out) {
+  return content.separate && !content.passes.empty() ? pass_files(content.passes, out)
+                                                     : std::vector<std::filesystem::path>{out};
+}
+
 void check(const PictureContent& content, const std::filesystem::path& out, int width, int height) {
   check_pass_names(content.passes);
   if (!content.passes.empty() && out.extension() != ".exr")

@@ -18,7 +18,7 @@ struct PictureContent {
   std::vector<std::string> passes;  ///< channels for compositing; empty: colours only
   bool separate = false;            ///< a file for each pass
 
-  /// The fields of actions.
+  /// The fields that pictures and films have.
   template <class Self, class Visitor>
   static void fields(Self& self, Visitor& visit) {
     visit("transparent", self.transparent, Need::optional, "no background, but alpha; not for JPEG");
@@ -26,9 +26,11 @@ struct PictureContent {
           "all directions in an equirectangular picture, twice as wide as high");
     visit("passes", self.passes, Need::optional,
           "channels of an OpenEXR picture, of color, alpha, depth, normal, node, position and light");
-    visit("separate", self.separate, Need::optional, "with passes: a file for each, such as picture.depth.exr");
   }
 };
+
+/// The files that are written for `out`: itself, or one for each pass.
+std::vector<std::filesystem::path> files_of(const PictureContent& content, const std::filesystem::path& out);
 
 /// Throws FieldError if a file of this name cannot hold the content, or if fields do not go together.
 void check(const PictureContent& content, const std::filesystem::path& out, int width, int height);

@@ -14,8 +14,10 @@
 namespace rebake {
 
 void run(Session& session, const RenderAction& action) {
-  check_picture_path(action.out, session.document.sources());
-  refuse_replacing_work(action.out);
+  for (const std::filesystem::path& file : files_of(action.content, action.out)) {
+    check_picture_path(file, session.document.sources());
+    refuse_replacing_work(file);
+  }
   check(action.content, action.out, action.width, action.height);
   const Scene all = action.time ? scene_at(session.scene(), *action.time) : session.scene();
   const Scene scene = with_only(all, action.nodes);
@@ -32,8 +34,10 @@ void run(Session& session, const RenderAction& action) {
     picture = render_to_file(session.renderer(), scene, view, {}, &lighting, action.content, action.out,
                              session.document.sources());
   }
-  session.outputs.push_back(action.out);
-  session.say(fmt::format("rendered {}", action.out));
+  for (const std::filesystem::path& file : files_of(action.content, action.out)) {
+    session.outputs.push_back(file.string());
+    session.say(fmt::format("rendered {}", file.string()));
+  }
   for (const LightDecision& decision : lighting.summary)
     session.say(fmt::format("light: {} {}: {}", decision.runs ? "runs" : "skipped", decision.name, decision.words()));
   if (action.content.passes.empty() && !action.sheet)
@@ -51,6 +55,8 @@ REBAKE_DESCRIBE_ACTION(
       visit("height", action.height, Need::optional, "size of the picture", Unit::pixels);
       visit("samples", action.samples, Need::optional, "samples per pixel: 1, 4 or 16");
       PictureContent::fields(action.content, visit);
+      visit("separate", action.content.separate, Need::optional,
+            "with passes: a file for each, such as picture.depth.exr");
       visit("time", action.time, Need::optional, "seconds: the scene as its keyframes move it; default: as it stands");
       visit("sheet", action.sheet, Need::optional,
             "columns and rows of a contact sheet of all stored views, width and height of each picture");

@@ -47,6 +47,9 @@ void FilmOptions::render(LoadedScene opened, const ViewOptions& view, const Pict
   action.out = out;
   action.path = path;
   action.camera = start.camera;
+  // The framing's planes fit the scene as it stands; those of a film are fitted to each picture.
+  if (view.camera_file.empty() && !view.near_plane && !view.far_plane)
+    action.camera->near_plane = action.camera->far_plane = 0;
   action.fps = fps;
   action.seconds = seconds;
   action.loop = loop;

@@ -236,13 +236,15 @@ void render(const Rendering& options) {
     throw FieldError("-o", "is missing: name a picture to write, or use --plan, --audit or --time");
   const auto [width, height] = options.view.pixels();
   if (!options.out.empty()) {
-    check_picture_path(options.out, {});
+    for (const std::filesystem::path& file : files_of(options.content, options.out)) check_picture_path(file, {});
     check(options.content, options.out, width, height);
   }
   auto [scene, sources] = load_scenes(options.folders, options.reading, progress_bar());
   options.view.protect_files(sources);
-  if (!options.out.empty()) check_picture_path(options.out, sources);
-  refuse_replacing_work(options.out);
+  for (const std::filesystem::path& file : files_of(options.content, options.out)) {
+    if (!options.out.empty()) check_picture_path(file, sources);
+    refuse_replacing_work(file);
+  }
   options.view.set_background(scene);
   if (options.at) scene = scene_at(scene, *options.at);
   const View view = options.view.view(scene);

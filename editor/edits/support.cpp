@@ -109,6 +109,14 @@ void keep_triangles(Node& node, const TriangleSet& flags, bool wanted) {
   }
 }
 
+void move_in_parent(Node& node, const Affine& motion) {
+  node.to_parent = motion * node.to_parent;
+  if (!node.motion || node.motion->place.empty()) return;
+  NodeMotion moved = *node.motion;
+  for (auto& key : moved.place) key.value = motion * key.value;
+  node.motion = std::make_shared<const NodeMotion>(std::move(moved));
+}
+
 Node without_ids(const Node& node) {
   Node copy = node;
   copy.id = NodeId::none;

@@ -36,6 +36,9 @@ std::shared_ptr<const BakedObject> triangles_of(const BakedObject& object, const
 /// selection.
 void keep_triangles(Node& node, const TriangleSet& flags, bool wanted);
 
+/// Moves a node within its parent: its transform, and its keyframes.
+void move_in_parent(Node& node, const Affine& motion);
+
 /// A copy of the node and its children without ids and selections, for adding as new nodes.
 Node without_ids(const Node& node);
 

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/cameras/keyframes_json.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/texture/texels.h"
 #include "render/image.h"
@@ -27,34 +28,58 @@ template <class Value>
 void add(ContentHash& hash, const std::vector<Value>& values) {
   hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)});
 }
-void add(ContentHash& hash, const Affine& affine) {
-  hash.add({reinterpret_cast<const char*>(affine.data()), 16 * sizeof(double)});
-}
-
 std::uint64_t object_hash(const BakedObject& object) {
   ContentHash hash;
   for (const TextureSet& set : object.sets) {
     add(hash, set.soup.positions());
     add(hash, set.soup.uvs());
     add(hash, set.soup.faces());
+    hash.add(set.texels->alpha_code() == AlphaCode::halved ? "halved" : "plain");
     if (set.soup.rotations()) add(hash, *set.soup.rotations());
     for (int row = 0; row < set.texels->tile_rows(); ++row)
       for (int column = 0; column < set.texels->tile_columns(); ++column)
         add(hash, *set.texels->tile(column, row)->texels());
   }
   const Decoder& decoder = *object.decoder;
+  hash.add(std::to_string(static_cast<int>(decoder.rule)));
   for (const auto* matrix : {&decoder.weights0, &decoder.weights1, &decoder.weights2})
-    hash.add({reinterpret_cast<const char*>(matrix->data()), static_cast<std::size_t>(matrix->size()) * sizeof(float)});
+    hash.add(
+        {reinterpret_cast<const char*>(matrix->data()), static_cast<std::size_t>(matrix->size()) * sizeof(double)});
   for (const auto* bias : {&decoder.bias0, &decoder.bias1, &decoder.bias2})
-    hash.add({reinterpret_cast<const char*>(bias->data()), static_cast<std::size_t>(bias->size()) * sizeof(float)});
+    hash.add({reinterpret_cast<const char*>(bias->data()), static_cast<std::size_t>(bias->size()) * sizeof(double)});
   return hash.value();
 }
 
-bool is_numbered(const std::string& name) {
-  const std::size_t dot = name.find('.');
-  return dot >= 5 && dot != std::string::npos &&
-         std::all_of(name.begin(), name.begin() + static_cast<std::ptrdiff_t>(dot),
-                     [](unsigned char c) { return std::isdigit(c) != 0; });
+std::string picture_name(std::size_t number, const std::string& extension) {
+  return fmt::format("{:05}{}", number, extension);
+}
+
+// The record of a film's folder; null if there is none.
+nlohmann::json record_in(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / record, error)) return {};
+  const auto read = nlohmann::json::parse(read_file(folder / record), nullptr, false);
+  return read.is_object() && read.contains(mark) ? read : nlohmann::json();
+}
+
+// The pictures of the film that a folder holds. Throws FileError if it holds anything else.
+std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json& known) {
+  std::set<std::string> names;
+  if (known.is_object())
+    for (std::size_t k = 0; k < known.value("count", std::size_t{0}); ++k)
+      names.insert(picture_name(k, known.value("extension", "")));
+  std::vector<fs::path> pictures;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (known.is_object() && name == record) continue;
+    if (!names.contains(name) || !entry.is_regular_file() || entry.is_symlink())
+      throw FileError(folder,
+                      known.is_object()
+                          ? fmt::format("contains \"{}\", which is not part of its film; choose another folder", name)
+                          : "exists and is not a film's folder; choose a new or empty folder");
+    pictures.push_back(entry.path());
+  }
+  return pictures;
 }
 
 }  // namespace
@@ -75,9 +100,11 @@ std::uint64_t picture_hash(const Scene& scene, const Progress& progress) {
     }
     if (node.motion)
       for (const auto& [name, track] : node.motion->bends) {
-        add(hash, track.to_space);
-        for (const auto& key : track.degrees)
-          hash.add(fmt::format("{} {} {} {};", name, key.seconds, key.value, static_cast<int>(key.to_next)));
+        // With its selection, which scene.json leaves out.
+        NodeMotion one;
+        one.bends[name] = track;
+        one.bends[name].selection.clear();
+        hash.add(track.selection + motion_json(one).dump());
       }
     for (const BakedBody& body : node.object->bodies) {
       std::string& body_text = known[body.object.get()];
@@ -88,48 +115,45 @@ std::uint64_t picture_hash(const Scene& scene, const Progress& progress) {
   return hash.value();
 }
 
-PictureFolder::PictureFolder(fs::path folder, std::string extension, const std::string& content,
+PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t count, const std::string& content,
                              const SourceGuard& sources)
     : folder_(std::move(folder)), extension_(std::move(extension)) {
   sources.check_folder(folder_);
   std::error_code error;
-  std::vector<fs::path> pictures;
-  bool same = false, any = false;
   if (fs::exists(folder_, error)) {
     if (!fs::is_directory(folder_)) throw FileError(folder_, "is a file; name a folder, or a .mp4 or .webm file");
-    for (const auto& entry : fs::directory_iterator(folder_)) {
-      any = true;
-      const std::string name = entry.path().filename().string();
-      if (name != record && !(is_numbered(name) && entry.is_regular_file() && !entry.is_symlink()))
-        throw FileError(folder_,
-                        fmt::format("contains \"{}\", which is not part of a film; choose another folder", name));
-      if (name != record) pictures.push_back(entry.path());
+    const nlohmann::json before = record_in(folder_);
+    const std::vector<fs::path> pictures = film_pictures(folder_, before);
+    if (before.is_object() && before.value("content", "") == content) return;
+    for (const fs::path& picture : pictures) {
+      sources.check_file(picture);
+      remove_file(picture);
     }
-    if (any) {
-      const auto before = fs::exists(folder_ / record)
-                              ? nlohmann::json::parse(read_file(folder_ / record), nullptr, false)
-                              : nlohmann::json();
-      if (!before.is_object() || !before.contains(mark))
-        throw FileError(folder_, "exists and is not a film's folder; choose a new or empty folder");
-      same = before.value("content", "") == content;
-    }
+    removed_ = pictures.size();
   }
   fs::create_directories(folder_, error);
   if (error) throw FileError(folder_, "cannot be created: " + error.message());
-  if (same) return;
-  for (const fs::path& picture : pictures) {
-    sources.check_file(picture);
-    remove_file(picture);
-  }
-  removed_ = pictures.size();
-  write_file_atomically(folder_ / record, nlohmann::json{{mark, 1}, {"content", content}}.dump(1) + "\n", sources);
+  write_file_atomically(
+      folder_ / record,
+      nlohmann::json{{mark, 1}, {"content", content}, {"count", count}, {"extension", extension_}}.dump(1) + "\n",
+      sources);
 }
 
-fs::path PictureFolder::picture(std::size_t number) const {
-  return folder_ / fmt::format("{:05}{}", number, extension_);
+void PictureFolder::remove() const {
+  const std::vector<fs::path> pictures = film_pictures(folder_, record_in(folder_));
+  for (const fs::path& picture : pictures) remove_file(picture);
+  remove_file(folder_ / record);
+  std::error_code error;
+  fs::remove(folder_, error);
 }
 
-fs::path PictureFolder::pattern() const { return folder_ / ("%05d" + extension_); }
+fs::path PictureFolder::picture(std::size_t number) const { return folder_ / picture_name(number, extension_); }
+
+fs::path PictureFolder::pattern() const {
+  std::string pattern;
+  for (const char c : folder_.string()) pattern += c == '%' ? "%%" : std::string(1, c);
+  return fs::path(pattern) / ("%05d" + extension_);
+}
 
 bool PictureFolder::has(std::size_t number) const { return is_picture_file(picture(number)); }
 

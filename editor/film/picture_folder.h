@@ -17,13 +17,15 @@ std::uint64_t picture_hash(const Scene& scene, const Progress& progress = {});
 /// interrupted goes on.
 class PictureFolder {
  public:
-  /// Opens or creates the folder. `content`: text that identifies the film; pictures of another one are removed.
-  /// Throws FileError if the folder has files that are not those of a film.
-  PictureFolder(std::filesystem::path folder, std::string extension, const std::string& content,
+  /// Opens or creates the folder of a film of `count` pictures. `content`: text that identifies the film; the pictures
+  /// that film.json lists for another one are removed. Throws FileError if the folder has other files.
+  PictureFolder(std::filesystem::path folder, std::string extension, std::size_t count, const std::string& content,
                 const SourceGuard& sources);
+  /// Removes the pictures, film.json and the folder. Throws FileError if it has other files by now.
+  void remove() const;
 
   std::filesystem::path picture(std::size_t number) const;
-  /// The name pattern of the pictures in printf notation.
+  /// The path pattern of the pictures in printf notation.
   std::filesystem::path pattern() const;
   /// Whether a picture of this film exists already.
   bool has(std::size_t number) const;

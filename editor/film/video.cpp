@@ -39,6 +39,7 @@ std::vector<std::string> encoder_command(const Video& video) {
   // Constant quality, hardly distinguishable from the pictures.
   if (video.codec.empty() && webm) add({"-crf", "18", "-b:v", "0", "-row-mt", "1"});
   if (video.codec.empty() && !webm) add({"-crf", "16", "-movflags", "+faststart"});
+  add({"-metadata", fmt::format("comment={}", video_mark)});
   command.push_back(video.out.string());
   return command;
 }

@@ -16,6 +16,9 @@ struct Video {
   std::filesystem::path out;
 };
 
+/// Text in the metadata of every encoded video, by which it is known as one of Rebake.
+inline constexpr const char* video_mark = "Made by Rebake";
+
 /// Whether a path names a video that can be written: .mp4 or .webm.
 bool names_video(const std::filesystem::path& path);
 /// Throws Error if ffmpeg is not installed, and FieldError for a transparent MP4.

@@ -154,7 +154,7 @@ class Document:
         sheet: columns and rows of a contact sheet of all stored views, width and height of each picture
         nodes: only these nodes and their children; default: all
         """
-    def film(self, out: str | PathLike[str], path: str = "keys", view: str = "", camera: Camera | None = None, fps: float | None = None, seconds: float | None = None, loop: bool = False, width: int = 800, height: int = 800, samples: int = 4, transparent: bool = False, panorama: bool = False, passes: Sequence[str] | None = None, separate: bool = False, codec: str = "", picture: str = "png", nodes: Sequence[Node] | None = None) -> list[str]:
+    def film(self, out: str | PathLike[str], path: str = "keys", view: str = "", camera: Camera | None = None, fps: float | None = None, seconds: float | None = None, loop: bool = False, width: int = 800, height: int = 800, samples: int = 4, transparent: bool = False, panorama: bool = False, passes: Sequence[str] | None = None, codec: str = "", picture: str = "png", nodes: Sequence[Node] | None = None) -> list[str]:
         """Renders a film of the scene, which moves by its keyframes; returns notes.
 
         out: folder for numbered pictures, or a video .mp4 or .webm, which the program ffmpeg encodes
@@ -170,7 +170,6 @@ class Document:
         transparent: no background, but alpha; not for JPEG
         panorama: all directions in an equirectangular picture, twice as wide as high
         passes: channels of an OpenEXR picture, of color, alpha, depth, normal, node, position and light
-        separate: with passes: a file for each, such as picture.depth.exr
         codec: encoder of ffmpeg; default: libx264 for MP4, libvpx-vp9 for WebM
         picture: format of the pictures in a folder: png, exr, webp or jpg
         nodes: only these nodes and their children; default: all

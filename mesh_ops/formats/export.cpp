@@ -14,6 +14,7 @@
 #include "mesh_ops/formats/mobilenerf/write_baked_folder.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/formats/scene_files.h"
+#include "mesh_ops/motion/scene_at.h"
 
 namespace rebake {
 
@@ -206,6 +207,8 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     report.notes.push_back(fmt::format(
         "plain colours are stored as logits: up to 1/255 off, and more at outlines and where a pixel mixes colours: {}",
         fmt::join(coded, ", ")));
+  if (has_keyframes(scene))
+    report.notes.emplace_back("keyframes are not exported; save keeps them, and glTF has them as animations");
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   if (report.one_folder) {
     const BakedObject& object = *nodes.front().object;

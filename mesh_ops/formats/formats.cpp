@@ -18,6 +18,7 @@
 #include "mesh_ops/formats/rebake_scene/scene_folder_files.h"
 #include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/formats/write_gltf.h"
+#include "mesh_ops/motion/scene_at.h"
 
 namespace rebake {
 
@@ -84,6 +85,8 @@ ExportReport write_nerf2mesh(const Scene& scene, const fs::path& folder, const E
   for (const PlacedNode& placed : placed_nodes(scene))
     if (placed.node->object && !placed.visible)
       report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
+  if (has_keyframes(scene))
+    report.notes.emplace_back("keyframes are not exported; save keeps them, and glTF has them as animations");
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   write_nerf2mesh_folder(out, *nodes.front().object, report.notes, progress);
   out.commit();

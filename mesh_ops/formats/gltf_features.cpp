@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -48,6 +49,8 @@ class FeatureReader {
     made->dialect.bgr = value.value("bgr", false);
     made->dialect.no_holes = value.value("noHoles", false);
     made->dialect.linear = value.value("linear", 0);
+    if (const int linear = made->dialect.linear; linear != 0 && (linear < 3 || linear > 9 || linear % 2 == 0))
+      document_.fail(fmt::format("{} has \"linear\": {}, which is not 3, 5, 7 or 9", gltf_features_extension, linear));
     if (value.contains("alphaCode"))
       made->dialect.alpha = value.at("alphaCode") == "plain" ? AlphaCode::plain : AlphaCode::halved;
     for (const json& set : value.at("sets")) made->sets.push_back(texture_set(set));
@@ -76,6 +79,9 @@ class FeatureReader {
     if (uvs.size() != positions.size())
       document_.fail(
           fmt::format("{} has {} positions, but {} UVs", gltf_features_extension, positions.size(), uvs.size()));
+    const auto finite = [](const auto& v) { return v.allFinite(); };
+    if (!std::all_of(positions.begin(), positions.end(), finite) || !std::all_of(uvs.begin(), uvs.end(), finite))
+      document_.fail(fmt::format("{} has a position or UV that is not finite", gltf_features_extension));
     for (const Face& face : faces)
       for (const std::uint32_t vertex : face)
         if (vertex >= positions.size())

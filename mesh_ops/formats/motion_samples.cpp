@@ -12,6 +12,8 @@ namespace {
 
 constexpr double samples_per_second = 30, jump = 1e-4;  // a step takes 0.1 ms
 constexpr double most_deviation = 1.0 / 500;            // of the diagonal
+constexpr double most_of_travel = 1.0 / 50;             // of the farthest way of a vertex
+constexpr double most_samples = 20000;
 constexpr std::size_t most_poses = 32;
 
 // Times at which keyframes are sampled. `step`: all of them jump.
@@ -29,7 +31,8 @@ std::vector<double> sample_times(const Keyframes<Value>& keys, bool& step, bool 
     if (keys[k].to_next == Interpolation::step && next - jump > keys[k].seconds) times.push_back(next - jump);
     if (keys[k].to_next == Interpolation::smooth || (curved && keys[k].to_next == Interpolation::linear)) {
       const double length = next - keys[k].seconds;
-      const auto count = static_cast<std::size_t>(std::ceil(length * samples_per_second));
+      const double rate = std::min(samples_per_second, most_samples / keys.back().seconds);
+      const auto count = static_cast<std::size_t>(std::ceil(length * rate));
       for (std::size_t i = 1; i < count; ++i)
         times.push_back(keys[k].seconds + length * static_cast<double>(i) / static_cast<double>(count));
     }
@@ -43,16 +46,42 @@ void add_rotation(PlaceSamples& samples, Eigen::Quaterniond rotation) {
   samples.rotations.push_back(rotation.normalized());
 }
 
-double farthest(const BakedObject& a, const BakedObject& b, const BakedObject& middle) {
-  double result = 0;
-  for (std::size_t s = 0; s < middle.sets.size(); ++s) {
-    const auto &p = a.sets[s].soup.positions(), &q = b.sets[s].soup.positions(), &m = middle.sets[s].soup.positions();
-    for (std::size_t v = 0; v < m.size(); ++v) {
-      const double distance = ((p[v] + q[v]) / 2 - m[v]).norm();
-      if (std::isfinite(distance)) result = std::max(result, distance);
-    }
+// Calls visit(a, b, c) with the positions of each corner in three objects of the same faces.
+template <class Visit>
+void for_corners(const BakedObject& a, const BakedObject& b, const BakedObject& c, Visit visit) {
+  for (std::size_t s = 0; s < c.sets.size(); ++s) {
+    const Soup &p = a.sets[s].soup, &q = b.sets[s].soup, &r = c.sets[s].soup;
+    for (std::size_t f = 0; f < r.triangle_count(); ++f)
+      for (std::size_t k = 0; k < 3; ++k)
+        visit(p.positions()[p.faces()[f][k]], q.positions()[q.faces()[f][k]], r.positions()[r.faces()[f][k]]);
   }
+}
+
+// Largest distance of a corner from its place `share` of the way between a and b.
+double farthest(const BakedObject& a, const BakedObject& b, double share, const BakedObject& exact) {
+  double result = 0;
+  for_corners(a, b, exact, [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+    const double distance = ((1 - share) * p + share * q - r).norm();
+    if (std::isfinite(distance)) result = std::max(result, distance);
+  });
   return result;
+}
+
+// `object` with the vertices of `split`, which has the same faces, some of whose shared corners are split.
+std::shared_ptr<const BakedObject> with_vertices_of(const BakedObject& object,
+                                                    const std::vector<const TextureSet*>& split) {
+  auto made = std::make_shared<BakedObject>(object);
+  for (std::size_t s = 0; s < object.sets.size(); ++s) {
+    const Soup &from = object.sets[s].soup, &to = split[s]->soup;
+    std::vector<std::uint32_t> source(to.positions().size(), 0);
+    for (std::size_t f = 0; f < to.triangle_count(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) source[to.faces()[f][k]] = from.faces()[f][k];
+    auto positions = std::make_shared<std::vector<Vec3>>(to.positions());
+    for (std::size_t v = 0; v < source.size(); ++v) (*positions)[v] = from.positions()[source[v]];
+    made->sets[s].soup = Soup(positions, to.shared_uvs(), to.shared_faces(), from.vertex_attributes().picked(source),
+                              from.face_attributes());
+  }
+  return made;
 }
 
 }  // namespace
@@ -88,48 +117,74 @@ PlaceSamples camera_samples(const Keyframes<Camera>& keys) {
   return samples;
 }
 
-BendPoses bend_poses(const Node& node) {
-  BendPoses result;
-  const auto pose = [&](const std::optional<double>& seconds) {
-    Node posed = node;
-    // Also bends by 0°, so that all poses have the same vertices.
-    for (const auto& [name, track] : node.motion->bends)
-      posed.object = bent(posed, track, seconds ? value_at(track.degrees, *seconds) : 0);
-    return posed.object;
-  };
-  result.rest = pose(std::nullopt);
-  for (const auto& [name, track] : node.motion->bends) {
+namespace {
+
+// Times of keyframes and jumps of all bends, sorted.
+std::vector<double> bend_times(const NodeMotion& motion) {
+  std::vector<double> all;
+  for (const auto& [name, track] : motion.bends) {
     bool step = false;
     Keyframes<double> keys = track.degrees;
-    // Only keyframes and jumps: the times between are found below.
+    // The times between smooth keyframes are found by their deviation.
     for (auto& key : keys)
       if (key.to_next == Interpolation::smooth) key.to_next = Interpolation::linear;
     const std::vector<double> times = sample_times(keys, step, false);
-    result.seconds.insert(result.seconds.end(), times.begin(), times.end());
+    all.insert(all.end(), times.begin(), times.end());
     if (step)
-      for (std::size_t k = 1; k < keys.size(); ++k) result.seconds.push_back(keys[k].seconds - jump);
+      for (std::size_t k = 1; k < keys.size(); ++k) all.push_back(keys[k].seconds - jump);
   }
-  std::sort(result.seconds.begin(), result.seconds.end());
-  result.seconds.erase(std::unique(result.seconds.begin(), result.seconds.end()), result.seconds.end());
-  for (const double seconds : result.seconds) result.poses.push_back(pose(seconds));
-  const double allowed = most_deviation * result.rest->bounds().diagonal().norm();
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+}  // namespace
+
+BendPoses bend_poses(const Node& node) {
+  BendPoses result;
+  const auto pose = [&](double seconds) {
+    return bent(node, [&](const BendTrack& track) { return value_at(track.degrees, seconds); });
+  };
+  result.seconds = bend_times(*node.motion);
+  double travel = 0;
+  for (const double seconds : result.seconds) {
+    result.poses.push_back(pose(seconds));
+    travel = std::max(travel, farthest(*node.object, *node.object, 0, *result.poses.back()));
+  }
+  const double allowed = std::min(most_deviation * node.object->bounds().diagonal().norm(), travel * most_of_travel);
   for (std::size_t k = 0; k + 1 < result.poses.size();) {
-    if (result.seconds[k + 1] - result.seconds[k] < 2 * jump) {  // a step, which is meant to jump
+    const double length = result.seconds[k + 1] - result.seconds[k];
+    if (length < 2 * jump) {  // a step, which is meant to jump
       ++k;
       continue;
     }
-    const double middle = (result.seconds[k] + result.seconds[k + 1]) / 2;
-    const auto between = pose(middle);
-    const double deviation = farthest(*result.poses[k], *result.poses[k + 1], *between);
+    // Half-way, smooth motion and linear motion can agree.
+    double deviation = 0;
+    for (const double share : {0.25, 0.5, 0.75})
+      deviation = std::max(deviation, farthest(*result.poses[k], *result.poses[k + 1], share,
+                                               *pose(result.seconds[k] + share * length)));
     if (deviation > allowed && result.poses.size() < most_poses) {
+      const double middle = result.seconds[k] + length / 2;
       const auto at = static_cast<std::ptrdiff_t>(k) + 1;
       result.seconds.insert(result.seconds.begin() + at, middle);
-      result.poses.insert(result.poses.begin() + at, between);
+      result.poses.insert(result.poses.begin() + at, pose(middle));
       continue;
     }
     result.deviation = std::max(result.deviation, deviation);
     ++k;
   }
+  // Bends split corners that bent and unbent triangles share, if they move: all poses get the vertices of the most
+  // split ones.
+  std::vector<const TextureSet*> split;
+  for (std::size_t s = 0; s < node.object->sets.size(); ++s) {
+    split.push_back(&node.object->sets[s]);
+    for (const auto& one : result.poses)
+      if (one->sets[s].soup.positions().size() > split.back()->soup.positions().size()) split.back() = &one->sets[s];
+  }
+  std::vector<std::shared_ptr<const BakedObject>> poses;
+  for (const auto& one : result.poses) poses.push_back(with_vertices_of(*one, split));
+  result.rest = with_vertices_of(*node.object, split);
+  result.poses = std::move(poses);
   return result;
 }
 

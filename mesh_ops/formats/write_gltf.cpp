@@ -65,6 +65,11 @@ class GltfWriter {
     if (!scene.camera_keys.empty()) {
       roots.push_back(add_camera("film camera", value_at(scene.camera_keys, scene.camera_keys.front().seconds)));
       animate(roots.back(), camera_samples(scene.camera_keys), false);
+      const Camera& first = scene.camera_keys.front().value;
+      if (std::any_of(scene.camera_keys.begin(), scene.camera_keys.end(), [&](const Keyframe<Camera>& key) {
+            return key.value.fov_degrees != first.fov_degrees || key.value.ortho_height != first.ortho_height;
+          }))
+        notes_.emplace_back("the film camera keeps the field of view of its first keyframe: glTF cannot animate it");
     }
     root_["scenes"] = {{{"nodes", roots}}};
     root_["scene"] = 0;
@@ -235,6 +240,7 @@ class GltfWriter {
     root_["meshes"][mesh]["extensions"][gltf_features_extension] = {
         {"features", {{{"index", textures[0]}}, {{"index", textures[1]}}}},
         {"alphaCode", set.texels->alpha_code() == AlphaCode::halved ? "halved" : "plain"}};
+    if (!object_sets_.contains(&object)) object_order_.push_back(&object);
     json& sets = object_sets_[&object];
     if (sets.size() <= number)  // nodes can share an object
       while (sets.size() <= number) sets.push_back(nullptr);
@@ -251,7 +257,8 @@ class GltfWriter {
   void add_features(const Scene& scene) {
     std::map<const BakedObject*, std::string> names;
     json objects = json::array();
-    for (const auto& [object, sets] : object_sets_) {
+    for (const BakedObject* object : object_order_) {
+      const json& sets = object_sets_.at(object);
       names[object] = std::to_string(objects.size());
       json stored = json::array();
       for (const json& set : sets)
@@ -391,6 +398,7 @@ class GltfWriter {
   bool features_;
   const std::optional<Vec3>& eye_;  ///< whose colours are taken; nothing: means
   std::map<const FeatureTexture*, std::vector<std::size_t>> feature_textures_;
+  std::vector<const BakedObject*> object_order_;    ///< in which they were met
   std::map<const BakedObject*, json> object_sets_;  ///< the sets of each object in the extension
 };
 
@@ -438,15 +446,19 @@ ExportReport write_gltf(const Scene& scene, const fs::path& file, const ExportOp
 ExportReport write_gltf_features(const Scene& scene, const fs::path& file, const ExportOptions& options,
                                  const Progress& progress) {
   ExportReport report = write_glb(visible_part(scene), file, options, progress, true);
-  report.preserves_scene = true;
+  const std::vector<std::string> lost = unsaved_parts(scene);
+  report.preserves_scene = lost.empty();
+  report.notes.insert(report.notes.end(), lost.begin(), lost.end());
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (placed.node->object && !placed.visible) {
       report.preserves_scene = false;
       report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
     }
-    if (placed.node->object && !placed.node->object->bodies.empty() && scene.light)
+    if (placed.node->object && !placed.node->object->bodies.empty() && scene.light) {
+      report.preserves_scene = false;
       report.notes.push_back(fmt::format(
           "the unedited shape of \"{}\", which light needs, is not exported; save keeps it", placed.node->name));
+    }
   }
   return report;
 }

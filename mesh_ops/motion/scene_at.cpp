@@ -45,11 +45,8 @@ NodePtr node_at(const NodePtr& node, double seconds) {
   if (!node->motion) return std::make_shared<const Node>(std::move(result));
   try {
     if (!node->motion->place.empty()) result.to_parent = value_at(node->motion->place, seconds);
-    for (const auto& [name, track] : node->motion->bends) {
-      const double degrees = value_at(track.degrees, seconds);
-      if (degrees == 0) continue;
-      result.object = bent(result, track, degrees);
-    }
+    if (node->object)
+      result.object = bent(*node, [&](const BendTrack& track) { return value_at(track.degrees, seconds); });
   } catch (const Error& error) {
     throw EditError(fmt::format("\"{}\" at {:.6g} s: {}", node->name, seconds, error.what()));
   }
@@ -97,11 +94,13 @@ TriangleSet bent_triangles(const Node& node, const BendTrack& track) {
         *node.object, [&](const Vec3& centre) { return track.box->contains(Vec3(track.to_box * centre)); });
     for (std::size_t f = 0; f < flags.size(); ++f) flags[f] &= inside[f];
   }
-  if (count(flags) == 0) throw Error("no triangle is inside the region of its bend");
   return flags;
 }
 
-std::shared_ptr<const BakedObject> bent(const Node& node, const BendTrack& track, double degrees) {
+namespace {
+
+std::shared_ptr<const BakedObject> bent_by(const std::shared_ptr<const BakedObject>& object, const TriangleSet& flags,
+                                           const BendTrack& track, double degrees) {
   ClosedForm form;
   form.kind = ClosedForm::Kind::bend;
   form.origin = track.origin;
@@ -111,9 +110,23 @@ std::shared_ptr<const BakedObject> bent(const Node& node, const BendTrack& track
   form.to = track.to;
   form.radians = degrees * std::numbers::pi / 180;
   check(form);
-  return deformed(*node.object, track.to_space, bent_triangles(node, track), track.falloff,
+  return deformed(*object, track.to_space, flags, track.falloff,
                   track.spine.empty() ? deformation_by(form) : deformation_by(along_curve(form, track.spine)))
       .object;
+}
+
+}  // namespace
+
+std::shared_ptr<const BakedObject> bent(const Node& node, const std::function<double(const BendTrack&)>& degrees) {
+  std::shared_ptr<const BakedObject> object = node.object;
+  for (const auto& [name, track] : node.motion->bends) {
+    const double angle = degrees(track);
+    if (angle == 0) continue;
+    // Bends keep the number and order of triangles.
+    if (const TriangleSet flags = bent_triangles(node, track); count(flags) > 0)
+      object = bent_by(object, flags, track, angle);
+  }
+  return object;
 }
 
 }  // namespace rebake

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
@@ -14,10 +16,11 @@ double duration(const Scene& scene);
 /// the node.
 Scene scene_at(const Scene& scene, double seconds);
 
-/// The triangles of a node that a bend moves, a flag each. Throws Error if its stored selection is missing, or if there
-/// are none.
+/// The triangles of a node that a bend moves, a flag each; regions refer to the unbent object. Throws Error if its
+/// stored selection is missing.
 TriangleSet bent_triangles(const Node& node, const BendTrack& track);
-/// The object of a node bent by an angle.
-std::shared_ptr<const BakedObject> bent(const Node& node, const BendTrack& track, double degrees);
+/// The object of a node bent by all its tracks, by the angles that `degrees` gives. Parts that a later edit took out of
+/// the region of a track do not bend.
+std::shared_ptr<const BakedObject> bent(const Node& node, const std::function<double(const BendTrack&)>& degrees);
 
 }  // namespace rebake

@@ -182,7 +182,10 @@ Camera value_at(const Keyframes<Camera>& keys, double seconds) {
     return Eigen::Quaterniond(Mat3(world_to_camera(keys[k].value).transpose())).normalized();
   });
   camera.eye = camera.target + rotation * Vec3(0, 0, distance);
-  camera.up = rotation * Vec3::UnitY();
+  // Between cameras with the same up direction, the horizon stays level.
+  Vec3 up;
+  for (int axis = 0; axis < 3; ++axis) up[axis] = number([&](const Camera& one) { return one.up.normalized()[axis]; });
+  camera.up = up.norm() > 0 ? Vec3(up.normalized()) : Vec3(rotation * Vec3::UnitY());
   camera.fov_degrees = number([](const Camera& one) { return one.fov_degrees; });
   camera.ortho_height = scaled([](const Camera& one) { return one.ortho_height; });
   camera.near_plane = scaled([](const Camera& one) { return one.near_plane; });

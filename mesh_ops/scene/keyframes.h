@@ -15,6 +15,9 @@ namespace rebake {
 /// keyframe and at turning points, without overshoot.
 enum class Interpolation { smooth, linear, step };
 
+/// Latest time of a keyframe in seconds: a day.
+inline constexpr double most_seconds = 86400;
+
 /// A value at a time.
 template <class Value>
 struct Keyframe {
@@ -82,8 +85,9 @@ double value_at(const Keyframes<double>& keys, double seconds);
 /// Translation and stretch by components; the rotation of the polar factors along the shortest way, smooth ones as a
 /// spherical Bézier curve (Shoemake 1985). Throws Error if one of two transforms is mirrored, or one is singular.
 Affine value_at(const Keyframes<Affine>& keys, double seconds);
-/// The target and the logarithm of the distance by components, and the rotation as above, so that the camera stays on
-/// an orbit about a fixed target. Between a pinhole and an orthographic camera it jumps at the later keyframe.
+/// The target, the logarithm of the distance and the up direction by components, and the direction to the eye by the
+/// rotation as above, so that the camera stays on an orbit about a fixed target. Between a pinhole and an orthographic
+/// camera it jumps at the later keyframe.
 Camera value_at(const Keyframes<Camera>& keys, double seconds);
 
 }  // namespace rebake

@@ -36,6 +36,9 @@ std::optional<SceneMotion> scene_motion(const Scene& whole) {
   const Scene scene = without_bend_keys(whole);
   if (!has_keyframes(scene)) return std::nullopt;
   SceneMotion motion;
+  // Long motions get fewer samples per second.
+  constexpr double most_samples = 20000;
+  motion.rate = std::min(motion.rate, most_samples / std::max(1.0, duration(scene)));
   motion.samples = static_cast<std::size_t>(std::ceil(duration(scene) * motion.rate)) + 1;
   std::map<NodeId, NodePlaces> places;
   for (const PlacedNode& placed : placed_nodes(scene)) places[placed.node->id].rest = placed.to_world;

@@ -187,6 +187,10 @@ class WebPage(unittest.TestCase):
         words = [w for key, value in CAMERA.items() for w in ("--" + key, ",".join(map(repr, value)) if isinstance(value, list) else value)]
         code, text = rebake("render", SAMPLES / "ficus", "-o", own, "--size", "400x400", "--background", "0,0,0", *words)
         self.assertEqual(code, 0, text)
+        code, text = rebake("render", SAMPLES / "ficus", "-o", self.at / "clear.png", "--size", "400x400", "--transparent", *words)
+        self.assertEqual(code, 0, text)
+        code, text = rebake("compare", self.capture(CAMERA), self.at / "clear.png", "--min-psnr", 40)
+        self.assertEqual(code, 0, text)
         alpha = self.browser.evaluate(f"viewer.setView({json.dumps(CAMERA)}), viewer.renderer.pixels(viewer.camera, 400, 400).filter((_, k) => k % 4 === 3).reduce((sum, a) => sum + (a > 0 && a < 255 ? 1 : 0), 0)")
         self.assertGreater(alpha, 100, "edges are partly transparent")
         self.assertEqual(self.browser.evaluate("viewer.renderer.pixels(viewer.camera, 40, 40)[3]"), 0)

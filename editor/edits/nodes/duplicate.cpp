@@ -20,7 +20,16 @@ Scene apply(const Scene& scene, const Duplicate& edit) {
   Transform move;
   move.node = NodeRef{beside[index + 1]->id};
   move.translate = edit.translate;
-  return apply(made, move);
+  const Affine before = placed.node->to_parent;
+  const Scene moved = apply(made, move);
+  if (!placed.node->motion || placed.node->motion->place.empty()) return moved;
+  // The copy's keyframes move with it.
+  return with_changed(moved, move.node.id, [&](Node& node) {
+    const Affine to_parent = node.to_parent;
+    node.to_parent = before;
+    move_in_parent(node, to_parent * before.inverse());
+    node.to_parent = to_parent;
+  });
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -15,7 +15,10 @@ Scene apply(const Scene& scene, const Group& edit) {
       throw FieldError("nodes", "must not contain a node twice, or a node inside another one");
     const PlacedNode placed = editable(result, ref.id);
     Node moved = *placed.node;
-    moved.to_parent = placed.to_world;
+    if (placed.node->to_parent.matrix() != placed.to_world.matrix()) {
+      move_in_parent(moved, placed.to_world * placed.node->to_parent.inverse());
+      moved.to_parent = placed.to_world;
+    }
     moved.visible = placed.visible;  // a node hidden by a group above stays hidden
     group.children.push_back(std::make_shared<const Node>(std::move(moved)));
     result = without(result, ref.id);

@@ -18,7 +18,8 @@ enum class Target { camera, place, bend };
 
 // What the edit sets a keyframe of. Throws FieldError for contradictory fields.
 Target target_of(const Key& edit) {
-  if (!std::isfinite(edit.time) || edit.time < 0) throw FieldError("time", "must be finite and not negative");
+  if (!(edit.time >= 0 && edit.time <= most_seconds))
+    throw FieldError("time", fmt::format("must lie between 0 and {:.0f} s, a day", most_seconds));
   const bool camera = edit.camera.has_value() || !edit.view.empty(),
              place = edit.position.has_value() || edit.rotation.has_value() || edit.scale.has_value();
   if (edit.camera && !edit.view.empty()) throw FieldError("view", "cannot be combined with camera");
@@ -67,6 +68,7 @@ BendTrack track_of(const Scene& scene, const PlacedNode& placed, const Key& edit
   track.falloff = edit.falloff;
   track.to_space = placed.to_world;
   const TriangleSet flags = bent_triangles(*placed.node, track);
+  if (count(flags) == 0) throw EditError("no triangle is inside the region of the bend");
   const DeformSet set{{placed}, {flags}};
   // An automatic axis follows the selected triangles.
   const Scene selected = with_changed(scene, placed.node->id,

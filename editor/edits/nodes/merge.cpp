@@ -157,6 +157,13 @@ Scene apply(const Scene& scene, const Merge& edit) {
           fmt::format("\"{}\" and \"{}\" have different decoders or axes, so they cannot become one object: "
                       "group them instead",
                       parts.front().node->name, part.node->name));
+    const NodeMotion still;
+    const auto motion = [&](const PlacedNode& one) { return one.node->motion ? *one.node->motion : still; };
+    if (!(motion(part) == motion(parts.front())))
+      throw EditError(
+          fmt::format("\"{}\" and \"{}\" have different keyframes, so they cannot become one object: remove "
+                      "the keyframes, or group the nodes instead",
+                      parts.front().node->name, part.node->name));
     for (std::size_t k = 0; k + 1 < parts.size(); ++k)
       if (parts[k].node->id == part.node->id)
         throw FieldError("nodes", fmt::format("\"{}\" is named twice", part.node->name));

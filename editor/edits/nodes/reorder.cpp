@@ -20,7 +20,9 @@ Scene apply(const Scene& scene, const Reorder& edit) {
     parent_to_world = target->to_world;
   }
   if (parent != parent_of(scene, edit.node.id)) {
-    moved.to_parent = parent_to_world.inverse() * placed.to_world;
+    const Affine to_parent = parent_to_world.inverse() * placed.to_world;
+    move_in_parent(moved, to_parent * placed.node->to_parent.inverse());
+    moved.to_parent = to_parent;
     moved.visible = placed.visible;  // a node hidden by a group above stays hidden
   }
   const Scene result = with_added(rest, std::move(moved), parent, static_cast<std::size_t>(edit.index));

@@ -20,14 +20,8 @@ Outcome apply(const Scene& scene, const SetLength& edit) {
   for (const NodePtr& root : scene.roots) {
     if (root->locked)
       throw EditError(fmt::format("\"{}\" is locked; unlock it first, because the whole scene is scaled", root->name));
-    result = with_changed(result, root->id, [&](Node& node) {
-      const Affine scaling(Eigen::UniformScaling<double>{factor});
-      node.to_parent = scaling * node.to_parent;
-      if (!node.motion) return;
-      NodeMotion motion = *node.motion;
-      for (auto& key : motion.place) key.value = scaling * key.value;
-      node.motion = std::make_shared<const NodeMotion>(std::move(motion));
-    });
+    result = with_changed(result, root->id,
+                          [&](Node& node) { move_in_parent(node, Affine(Eigen::UniformScaling<double>(factor))); });
     check_subtree(result, root->id);
   }
   const auto scale = [&](Camera& camera) {

@@ -1,10 +1,13 @@
 #include "mesh_ops/formats/cameras/keyframes_json.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/polar.h"
 #include "mesh_ops/formats/cameras/camera_json.h"
 
 namespace rebake {
@@ -30,11 +33,17 @@ json json_of(const Affine& affine) {
     for (int c = 0; c < 4; ++c) rows.push_back(affine.matrix()(r, c));
   return rows;
 }
+// An invertible transform.
 Affine affine_of(const json& rows) {
   if (!rows.is_array() || rows.size() != 12)
     throw FieldError("keyframes", "have a transform without 12 numbers (3 rows of 4)");
   Affine affine = Affine::Identity();
   for (int i = 0; i < 12; ++i) affine.matrix()(i / 4, i % 4) = finite(rows.at(static_cast<std::size_t>(i)));
+  try {
+    orthogonal_factor(affine.linear());
+  } catch (const std::invalid_argument& error) {
+    throw FieldError("keyframes", fmt::format("have a transform that cannot be inverted: {}", error.what()));
+  }
   return affine;
 }
 
@@ -53,7 +62,9 @@ Keyframes<Value> read_keys(const json& list, const Read& read) {
   Keyframes<Value> keys;
   for (const json& entry : list) {
     const double seconds = finite(entry.at("seconds"));
-    if (seconds < 0) throw FieldError("keyframes", "have a negative time");
+    if (!(seconds >= 0 && seconds <= most_seconds))
+      throw FieldError("keyframes",
+                       fmt::format("have a time of {:.6g} s, not between 0 and {:.0f}", seconds, most_seconds));
     const auto word = entry.at("to_next").get<std::string>();
     const auto found = std::find(interpolation_words.begin(), interpolation_words.end(), word);
     if (found == interpolation_words.end())
@@ -87,6 +98,7 @@ BendTrack bend_of(const json& value) {
   BendTrack track;
   track.to_space = affine_of(value.at("to_space"));
   track.falloff = finite(value.at("falloff"));
+  if (track.falloff < 0) throw FieldError("keyframes", "have a bend with a negative falloff");
   track.origin = vec3_of(value.at("origin"));
   track.axis = vec3_of(value.at("axis"));
   track.direction = vec3_of(value.at("direction"));

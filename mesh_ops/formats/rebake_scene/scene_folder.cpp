@@ -42,7 +42,8 @@ json node_json(const Node& node, const std::map<const BakedObject*, std::string>
   json out = {{"name", node.name}, {"transform", affine_json(node.to_parent)}};
   if (!node.visible) out["visible"] = false;
   if (node.locked) out["locked"] = true;
-  if (node.motion) out["keyframes"] = motion_json(*node.motion);
+  if (node.motion)
+    if (json motion = motion_json(*node.motion); !motion.empty()) out["keyframes"] = std::move(motion);
   if (node.object) {
     out["folder"] = folder_of.at(node.object.get());
     out["axes"] = axes_word(node.object->axes);
@@ -247,7 +248,8 @@ class SceneReader {
     }
     if (value.contains("keyframes")) {
       try {
-        node.motion = std::make_shared<const NodeMotion>(read_motion_json(value.at("keyframes")));
+        if (NodeMotion motion = read_motion_json(value.at("keyframes")); !motion.empty())
+          node.motion = std::make_shared<const NodeMotion>(std::move(motion));
       } catch (const FieldError& error) {
         throw FileError(name_, fmt::format("node \"{}\": {}", node.name, error.what()));
       }
@@ -379,8 +381,8 @@ Scene read_scene_folder(const fs::path& folder, const Progress& progress) {
   return SceneReader(folder, progress).run();
 }
 
-std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out, const Progress& progress) {
-  std::vector<std::string> notes, taken;
+std::vector<std::string> unsaved_parts(const Scene& scene) {
+  std::vector<std::string> notes;
   for (const PlacedNode& placed : placed_nodes(scene))
     if (!placed.node->saved_selections.empty())
       notes.push_back(
@@ -393,6 +395,11 @@ std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out
               fmt::format("the bend \"{}\" of \"{}\" has keyframes for a stored selection, so it is not "
                           "saved; a project keeps it",
                           name, placed.node->name));
+  return notes;
+}
+
+std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out, const Progress& progress) {
+  std::vector<std::string> notes = unsaved_parts(scene), taken;
   std::map<const BakedObject*, std::string> folder_of;
   std::vector<std::shared_ptr<const BakedObject>> written;
   // Bodies are of use only if light follows edits.

@@ -22,6 +22,9 @@ Scene read_scene_json(const std::string& text, const std::filesystem::path& name
 /// sentences for the user about data that was left out. Throws FileError.
 std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out, const Progress& progress = {});
 
+/// Sentences about parts of a scene that scene.json cannot hold: stored selections, and keyframes that need them.
+std::vector<std::string> unsaved_parts(const Scene& scene);
+
 /// The text of scene.json. `folder_of`: folder name per object, and with `with_bodies` also per body.
 std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of,
                              bool with_bodies = false);

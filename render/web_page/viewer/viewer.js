@@ -83,13 +83,22 @@ class Viewer extends EventTarget {
     this.setPlaying(false);
     if (before && !this.earlier) {
       element('progress').hidden = false;
-      const scene = await loadManifest('before.json');
-      this.earlier = {scene, renderer: new Renderer(canvas, scene)};
-      Object.assign(this, this.earlier);
-      await this.loadAll();
-      element('progress').hidden = true;
+      const scene = await loadManifest('before.json'), earlier = {scene, renderer: new Renderer(canvas, scene)};
+      try {
+        Object.assign(this, earlier);
+        await this.loadAll();
+        this.earlier = earlier;
+      } catch (error) {
+        Object.assign(this, this.edited);
+        element('before').setAttribute('aria-pressed', 'false');
+        throw error;
+      } finally {
+        element('progress').hidden = true;
+      }
     }
     Object.assign(this, before ? this.earlier : this.edited);
+    if (this.controls && this.scene) this.controls.scene = this.scene;
+    element('player').hidden = before || !this.motion;
     await this.drawnAtRest();
   }
 
@@ -164,6 +173,8 @@ class Viewer extends EventTarget {
     try {
       // The scene before the edits is loaded again when it is asked for.
       Object.assign(this, this.edited);
+      if (this.controls) this.controls.scene = this.scene;
+      element('player').hidden = !this.motion;
       this.earlier = undefined;
       element('before').setAttribute('aria-pressed', 'false');
       this.renderer = new Renderer(canvas, this.scene);

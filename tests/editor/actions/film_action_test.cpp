@@ -68,11 +68,15 @@ TEST_F(FilmActionTest, NeverReplacesOtherFiles) {
   expect_error(film(R"("out": "{here}/mine")"), "is not a film's folder");
   EXPECT_EQ(read_file(at("mine/00000.png")), "a picture of mine");
   run(film(R"("out": "{here}/film")"));
-  write_text(at("film/notes.txt"), "mine");
-  expect_error(film(R"("out": "{here}/film")"), "contains \"notes.txt\"");
+  for (const char* mine : {"film/notes.txt", "film/20240131.txt", "film/00099.png"}) {
+    write_text(at(mine), "mine");
+    expect_error(film(R"("out": "{here}/film", "samples": 1)"), "which is not part of its film");
+    EXPECT_EQ(read_file(at(mine)), "mine");
+    fs::remove(at(mine));
+  }
   encoder("exit 0");
   write_text(at("a.mp4"), "a file of mine");
-  expect_error(film(R"("out": "{here}/a.mp4")"), "is not a video");
+  expect_error(film(R"("out": "{here}/a.mp4")"), "is not a video of Rebake");
   expect_error(film(R"("out": "{here}/ball/x.mp4")"), "ball");
 }
 
@@ -81,11 +85,11 @@ TEST_F(FilmActionTest, KeepsThePicturesIfTheEncoderFails) {
   expect_error(film(R"("out": "{here}/a.mp4")"), "ffmpeg failed with exit status 7");
   EXPECT_FALSE(fs::exists(at("a.mp4")));
   EXPECT_TRUE(fs::exists(at("a.mp4.pictures/00004.png")));
-  encoder(R"(for last; do :; done; printf '\0\0\0\0ftypfilm' > "$last")");
+  encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");
   said();
   run(film(R"("out": "{here}/a.mp4")"));
   EXPECT_NE(said().find("5 of 5 pictures exist already"), std::string::npos);
-  EXPECT_EQ(read_file(at("a.mp4")).substr(4), "ftypfilm");
+  EXPECT_EQ(read_file(at("a.mp4")), "Made by Rebake");
   EXPECT_FALSE(fs::exists(at("a.mp4.pictures")));
 }
 

@@ -126,6 +126,20 @@ TEST(Keyframes, CamerasStayOnTheirOrbit) {
   EXPECT_EQ(value_at(keys, 2), keys[2].value);
 }
 
+TEST(Keyframes, HorizonsStayLevel) {
+  Keyframes<Camera> keys;
+  for (const Vec3& eye : {Vec3(0, 1, 4), Vec3(3, 5, 1), Vec3(-2, -1, -3)}) {
+    Camera camera;
+    camera.eye = eye;
+    set_key(keys, {static_cast<double>(keys.size()), camera, Interpolation::smooth});
+  }
+  for (double t = 0; t <= 2; t += 0.01) {
+    const Camera at = value_at(keys, t);
+    EXPECT_TRUE(at.up.isApprox(Vec3::UnitY(), 1e-14));
+    EXPECT_NEAR(world_to_camera(at).row(0).y(), 0, 1e-14) << "the right direction is horizontal";
+  }
+}
+
 TEST(Keyframes, CamerasAccelerateByFactorsOfTheDistance) {
   Keyframes<Camera> keys;
   Camera camera;

@@ -91,10 +91,39 @@ TEST_F(KeyTest, ScenesAndProjectsKeepKeyframes) {
   EXPECT_EQ(opened.scene().camera_keys, camera);
 }
 
+TEST_F(KeyTest, KeyframesMoveWithTheirNodeThroughTheTree) {
+  run(import + R"({"op": "key", "node": "ball", "time": 0, "interpolation": "linear"}
+{"op": "key", "node": "ball", "time": 2, "position": [4, 0, 0]}
+{"op": "group", "nodes": ["ball"], "as": "all"}
+{"op": "transform", "node": "all", "translate": [0, 5, 0]})");
+  const auto world = [&](const std::string& name) {
+    const Scene moved = at(2);
+    return Vec3(find_placed(moved, find(moved, name)->id)->to_world.translation());
+  };
+  EXPECT_EQ(world("ball"), Vec3(4, 5, 0));
+  run(R"({"op": "reorder", "node": "ball", "index": 0, "top": true})");
+  EXPECT_EQ(world("ball"), Vec3(4, 5, 0));
+  run(R"({"op": "duplicate", "node": "ball", "as": "copy", "translate": [0, 0, 3]})");
+  EXPECT_EQ(world("copy"), Vec3(4, 5, 3));
+  run(R"({"op": "transform", "node": "all", "translate": [0, 1, 0]}
+{"op": "group", "nodes": ["copy"], "as": "more"})");
+  EXPECT_EQ(world("copy"), Vec3(4, 5, 3));
+}
+
+TEST_F(KeyTest, PartsOutsideOfABendStay) {
+  run(import + R"({"op": "key", "node": "ball", "time": 1, "degrees": 40, "box": {"min": [-2, 0, -2], "max": [2, 2, 2]}}
+{"op": "select", "node": "ball", "box": {"min": [-2, -2, -2], "max": [2, -0.3, 2]}}
+{"op": "separate", "node": "ball", "as": "foot"})");
+  EXPECT_EQ(find(at(1), "foot")->object, node("foot")->object);
+  EXPECT_NE(find(at(1), "ball")->object, node("ball")->object);
+  run(R"({"op": "key", "node": "foot", "time": 2, "position": [1, 0, 0]})");
+  expect_error(R"({"op": "merge", "nodes": ["ball", "foot"]})", "different keyframes");
+}
+
 TEST_F(KeyTest, SaysWhatIsWrong) {
   run(import);
   expect_error(R"({"op": "key", "time": 1})", "give a node, or a camera or view");
-  expect_error(R"({"op": "key", "time": -1, "node": "ball"})", "not negative");
+  expect_error(R"({"op": "key", "time": -1, "node": "ball"})", "must lie between 0 and 86400 s");
   expect_error(R"({"op": "key", "time": 1, "degrees": 5})", "name the node that bends");
   expect_error(R"({"op": "key", "time": 1, "node": "ball", "degrees": 5, "position": [0, 0, 0]})",
                "one key edit for each");
