@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <fstream>
 
 #include "mesh_ops/base/error.h"
@@ -133,6 +134,21 @@ Image read_image(const std::filesystem::path& path) {
   const PictureLayout& layout = reader->layout();
   if (layout.width > 32768 || layout.height > 32768) throw FileError(path, "is larger than 32768 pixels per side");
   const int channels = layout.channels;
+  const std::size_t pixels = static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height);
+  if (layout.floating && path.extension() == ".exr") {
+    // Linear light, as write_picture() writes it.
+    std::vector<float> light(pixels * static_cast<std::size_t>(channels));
+    if (!reader->read(0, layout.height, channels, light.data()))
+      throw FileError(path, "cannot be decoded, it may be truncated: " + picture_problem(reader->error(), path));
+    Image picture{layout.width, layout.height, {}, {}};
+    for (std::size_t p = 0; p < pixels; ++p)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double value = light[p * static_cast<std::size_t>(channels) + (channels >= 3 ? c : 0)];
+        const double shown = std::isfinite(value) ? to_display(std::clamp(value, 0.0, 1.0)) : 0;
+        picture.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * shown)));
+      }
+    return picture;
+  }
   std::vector<std::uint8_t> raw(static_cast<std::size_t>(layout.width) * static_cast<std::size_t>(layout.height) *
                                 static_cast<std::size_t>(channels));
   Image image{layout.width, layout.height, {}, {}};

@@ -18,7 +18,8 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-/// Reads a picture file of at most 32768 × 32768 pixels; drops alpha and expands grey to RGB. Throws FileError.
+/// Reads a picture file of at most 32768 × 32768 pixels; drops alpha and expands grey to RGB; the linear light
+/// of OpenEXR becomes display colours. Throws FileError.
 Image read_image(const std::filesystem::path& path);
 /// Extensions of the formats that write_picture() writes: ".png, .jpg, …".
 std::string picture_extensions();

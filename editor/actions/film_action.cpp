@@ -36,6 +36,9 @@ void check_fields(const FilmAction& action) {
   if (const std::string extension = fs::path(action.out).extension().string();
       !video && (extension == ".mov" || extension == ".avi" || extension == ".mkv" || extension == ".gif"))
     throw FieldError("out", "videos are written as .mp4 and .webm; name such a file, or a folder for pictures");
+  if (const std::string extension = fs::path(action.out).extension().string();
+      extension == ".png" || extension == ".jpg" || extension == ".exr" || extension == ".webp")
+    throw FieldError("out", "names a picture, but a film is many: name a folder, or a .mp4 or .webm file");
   if (video) check_can_encode(action.out, action.content.transparent);
   if (!video && !action.codec.empty()) throw FieldError("codec", "applies to videos only");
   if (video && action.picture != "png") throw FieldError("picture", "applies to folders only");
@@ -99,7 +102,8 @@ class Film {
       refuse_replacing_work(action_.out);
       check_replaces_video();
     }
-    PictureFolder folder(pictures, video_ ? ".png" : "." + action_.picture, frames_.size(), content(), sources_);
+    PictureFolder folder(pictures, video_ ? ".png" : "." + action_.picture, frames_.size(), content(), video_,
+                         sources_);
     if (folder.removed() > 0)
       session_.say(
           fmt::format("note: {} pictures of an earlier film in {} were replaced", folder.removed(), pictures.string()));

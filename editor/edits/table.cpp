@@ -110,6 +110,15 @@ Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress
     if (const auto before = find_placed(scene, id); before && !before->visible)
       if (const auto placed = find_placed(outcome.scene, id); placed && !placed->visible)
         lines.push_back(fmt::format("note: \"{}\" is hidden", placed->node->name));
+  // Films follow keyframes, not the place that an edit gave.
+  for (const PlacedNode& placed : placed_nodes(outcome.scene)) {
+    if (!placed.node->motion || placed.node->motion->place.empty()) continue;
+    const NodePtr before = find(scene, placed.node->id);
+    if (before && before->motion == placed.node->motion &&
+        before->to_parent.matrix() != placed.node->to_parent.matrix())
+      lines.push_back(fmt::format("note: films still move \"{}\" by its keyframes; set one (key) to move it there too",
+                                  placed.node->name));
+  }
   if (edit.type().selects) lines.push_back(selected_line(edit.type().op, outcome.scene));
   for (std::string& line : outcome.report.lines) line.insert(0, std::string(edit.type().op) + ": ");
   outcome.report.lines.insert(outcome.report.lines.begin(), lines.begin(), lines.end());

@@ -50,7 +50,12 @@ void check_rate(double fps) {
 // The way through cameras of a file.
 std::vector<FilmFrame> frames_of_file(const FilmPath& path, double& fps, std::vector<std::string>& notes) {
   const CameraFormat& format = camera_format_for(path.path, "");
-  const std::vector<Camera> cameras = views_of(read_cameras(path.path, format.name, std::nullopt, notes), notes);
+  const std::vector<PhotoCamera> photographs = read_cameras(path.path, format.name, std::nullopt, notes);
+  if (const PhotoCamera& first = photographs.front(); first.width > 0)
+    notes.push_back(
+        fmt::format("the file's pictures have {}×{} pixels; those of the film have the size that is asked for",
+                    first.width, first.height));
+  const std::vector<Camera> cameras = views_of(photographs, notes);
   if (format.name == std::string("nerfstudio_path")) {
     fps = path.fps.value_or(nerfstudio_path_rate(path.path).value_or(usual_fps));
     check_rate(fps);

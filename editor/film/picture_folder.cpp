@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -62,6 +63,14 @@ nlohmann::json record_in(const fs::path& folder) {
   return read.is_object() && read.contains(mark) ? read : nlohmann::json();
 }
 
+// Whether a name is that of a picture, or of the record, whose writing was killed.
+bool is_leftover(const std::string& name, const std::set<std::string>& pictures) {
+  if (!name.ends_with(".partial")) return false;
+  return name.starts_with(std::string(record) + ".") ||
+         std::any_of(pictures.begin(), pictures.end(),
+                     [&](const std::string& picture) { return name.starts_with(picture + "."); });
+}
+
 // The pictures of the film that a folder holds. Throws FileError if it holds anything else.
 std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json& known) {
   std::set<std::string> names;
@@ -72,6 +81,10 @@ std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (known.is_object() && name == record) continue;
+    if (is_leftover(name, names)) {
+      remove_file(entry.path());
+      continue;
+    }
     if (!names.contains(name) || !entry.is_regular_file() || entry.is_symlink())
       throw FileError(folder,
                       known.is_object()
@@ -116,7 +129,7 @@ std::uint64_t picture_hash(const Scene& scene, const Progress& progress) {
 }
 
 PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t count, const std::string& content,
-                             const SourceGuard& sources)
+                             bool replaces, const SourceGuard& sources)
     : folder_(std::move(folder)), extension_(std::move(extension)) {
   sources.check_folder(folder_);
   std::error_code error;
@@ -125,6 +138,10 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
     const nlohmann::json before = record_in(folder_);
     const std::vector<fs::path> pictures = film_pictures(folder_, before);
     if (before.is_object() && before.value("content", "") == content) return;
+    if (!pictures.empty() && !replaces)
+      throw FileError(folder_,
+                      "holds pictures of another film: the scene, the way or the options differ; choose another "
+                      "folder, or remove this one first");
     for (const fs::path& picture : pictures) {
       sources.check_file(picture);
       remove_file(picture);
@@ -155,6 +172,15 @@ fs::path PictureFolder::pattern() const {
   return fs::path(pattern) / ("%05d" + extension_);
 }
 
-bool PictureFolder::has(std::size_t number) const { return is_picture_file(picture(number)); }
+bool PictureFolder::has(std::size_t number) const {
+  std::error_code error;
+  if (!fs::exists(picture(number), error)) return false;
+  try {
+    read_image(picture(number));
+    return true;
+  } catch (const FileError&) {
+    return false;  // damaged: it is rendered again
+  }
+}
 
 }  // namespace rebake

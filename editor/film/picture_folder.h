@@ -17,17 +17,18 @@ std::uint64_t picture_hash(const Scene& scene, const Progress& progress = {});
 /// interrupted goes on.
 class PictureFolder {
  public:
-  /// Opens or creates the folder of a film of `count` pictures. `content`: text that identifies the film; the pictures
-  /// that film.json lists for another one are removed. Throws FileError if the folder has other files.
+  /// Opens or creates the folder of a film of `count` pictures. `content`: text that identifies the film. If the folder
+  /// holds pictures of another one, they are removed if `replaces`. Throws FileError if they are not, and if the folder
+  /// has other files.
   PictureFolder(std::filesystem::path folder, std::string extension, std::size_t count, const std::string& content,
-                const SourceGuard& sources);
+                bool replaces, const SourceGuard& sources);
   /// Removes the pictures, film.json and the folder. Throws FileError if it has other files by now.
   void remove() const;
 
   std::filesystem::path picture(std::size_t number) const;
   /// The path pattern of the pictures in printf notation.
   std::filesystem::path pattern() const;
-  /// Whether a picture of this film exists already.
+  /// Whether a picture of this film exists already and can be decoded.
   bool has(std::size_t number) const;
   std::size_t removed() const { return removed_; }  ///< number of pictures of another film that were removed
 

@@ -22,6 +22,7 @@ std::vector<std::string> encoder_command(const Video& video) {
   const bool webm = video.out.extension() == ".webm";
   std::vector<std::string> command{program_path("ffmpeg"),
                                    "-nostdin",
+                                   "-xerror",
                                    "-loglevel",
                                    "error",
                                    "-y",

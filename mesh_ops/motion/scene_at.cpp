@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "mesh_ops/base/error.h"
@@ -73,6 +74,7 @@ double duration(const Scene& scene) {
 }
 
 Scene scene_at(const Scene& scene, double seconds) {
+  if (!std::isfinite(seconds)) throw FieldError("time", "must be finite");
   Scene result = scene;
   for (NodePtr& root : result.roots) root = node_at(root, seconds);
   result.camera_keys.clear();

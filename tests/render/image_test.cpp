@@ -60,6 +60,9 @@ TEST(Image, OpenExrHoldsLinearLight) {
   const TemporaryFolder folder;
   const Image image = colorful();
   write_picture(image, folder.path() / "a.exr", {});
+  const Image back = read_image(folder.path() / "a.exr");
+  for (std::size_t k = 0; k < image.rgb.size(); ++k)
+    EXPECT_NEAR(back.rgb[k], image.rgb[k], 1) << "display colours again";
   const auto reader = open_picture(folder.path() / "a.exr");
   ASSERT_TRUE(reader->layout().floating);
   std::vector<float> pixels(image.rgb.size());

@@ -14,6 +14,14 @@ namespace rebake {
 
 namespace {
 
+// Whether the edit states where to bend; otherwise it takes over what the track has.
+bool states_region(const Key& edit) {
+  const Key none;
+  return !edit.selection.empty() || edit.box || edit.falloff != 0 || edit.axis.axis != none.axis.axis ||
+         edit.axis.origin || edit.axis.from || edit.axis.to || !edit.axis.spine.points.empty() ||
+         edit.direction != none.direction;
+}
+
 enum class Target { camera, place, bend };
 
 // What the edit sets a keyframe of. Throws FieldError for contradictory fields.
@@ -29,6 +37,8 @@ Target target_of(const Key& edit) {
   if (!edit.node && place) throw FieldError("node", "is missing: name the node to place");
   if (!camera && !edit.node && !edit.remove)
     throw FieldError("node", "is missing: give a node, or a camera or view for a keyframe of the camera");
+  if (!edit.degrees && (states_region(edit) || edit.track != Key().track))
+    throw FieldError("degrees", "is missing: the other fields describe a bend");
   return edit.degrees ? Target::bend : edit.node ? Target::place : Target::camera;
 }
 
@@ -87,14 +97,6 @@ BendTrack track_of(const Scene& scene, const PlacedNode& placed, const Key& edit
   track.to = made.form.to;
   track.spine = made.spine;
   return track;
-}
-
-// Whether the edit states where to bend; otherwise it takes over what the track has.
-bool states_region(const Key& edit) {
-  const Key none;
-  return !edit.selection.empty() || edit.box || edit.falloff != 0 || edit.axis.axis != none.axis.axis ||
-         edit.axis.origin || edit.axis.from || edit.axis.to || !edit.axis.spine.points.empty() ||
-         edit.direction != none.direction;
 }
 
 Outcome with_camera_key(const Scene& scene, const Key& edit) {

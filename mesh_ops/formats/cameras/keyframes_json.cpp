@@ -138,6 +138,7 @@ json motion_json(const NodeMotion& motion) {
 }
 
 NodeMotion read_motion_json(const json& value) {
+  if (!value.is_object()) throw FieldError("keyframes", "must be an object with place and bends");
   NodeMotion motion;
   if (value.contains("place")) motion.place = read_keys<Affine>(value.at("place"), affine_of);
   if (value.contains("bends"))

@@ -131,6 +131,7 @@ TEST_F(KeyTest, SaysWhatIsWrong) {
                "stored selection \"tip\"");
   expect_error(R"({"op": "key", "time": 1, "node": "ball", "remove": true})", "no such keyframe at 1 s");
   expect_error(R"({"op": "key", "time": 1, "view": "x"})", "there is no view");
+  expect_error(R"({"op": "key", "time": 1, "node": "ball", "falloff": 0.2})", "describe a bend");
   expect_error(R"({"op": "key", "time": 1, "node": "ball", "degrees": 5, "box": {"min": [5, 5, 5], "max": [6, 6, 6]}})",
                "no triangle is inside");
 }
