@@ -34,7 +34,7 @@ std::size_t word(const GltfDocument& document, const json& value, const std::arr
 
 class FeatureReader {
  public:
-  FeatureReader(const GltfDocument& document, const json& extension) : document_(document), extension_(extension) {}
+  explicit FeatureReader(const GltfDocument& document) : document_(document) {}
 
   std::shared_ptr<const BakedObject> object(const json& value) {
     auto made = std::make_shared<BakedObject>();
@@ -107,7 +107,6 @@ class FeatureReader {
   }
 
   const GltfDocument& document_;
-  const json& extension_;
   std::map<std::string, std::shared_ptr<const FeatureTexture>> known_;
 };
 
@@ -140,7 +139,7 @@ std::optional<Scene> read_gltf_features(const fs::path& file, const Progress& pr
   try {
     if (extension.at("version") != gltf_features_version)
       document.fail(fmt::format("{} was written by a newer version of Rebake", gltf_features_extension));
-    FeatureReader reader(document, extension);
+    FeatureReader reader(document);
     std::vector<std::shared_ptr<const BakedObject>> objects;
     for (const json& object : extension.at("objects")) objects.push_back(reader.object(object));
     return read_scene_json(extension.at("scene").dump(), file, [&](const std::string& name) {
