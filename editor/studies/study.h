@@ -75,7 +75,7 @@ inline constexpr Study study_table[] = {
     {"register", "registration of captures: overlap, outliers and error", study_register},
     {"colors", "matching of two captures' colours: exposure, samples and error", study_colors},
     {"filtering", "linear filtering by finer textures: memory, error of colours, frame time", study_filtering},
-    {"publish", "web pages: position bits, texture coding and moving resolution; size, error, time", study_publish},
+    {"publish", "web pages: position bits, texture coding, moving resolution", study_publish},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
 
