@@ -35,6 +35,7 @@ void FilmOptions::check_unused() const {
 void FilmOptions::render(LoadedScene opened, const ViewOptions& view, const PictureContent& content,
                          const std::string& out) const {
   if (out.empty()) throw FieldError("-o", "is missing: name a folder, or a .mp4 or .webm file");
+  if (content.separate) throw FieldError("--separate", "does not apply to films: each picture holds all its passes");
   for (const auto& [given, name] : {std::pair(view.weights != ViewOptions().weights, "--weights"),
                                     {view.shading != ViewOptions().shading, "--shading"},
                                     {view.precision != ViewOptions().precision, "--precision"},

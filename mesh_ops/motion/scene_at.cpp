@@ -1,35 +1,19 @@
 #include "mesh_ops/motion/scene_at.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "mesh_ops/base/error.h"
-#include "mesh_ops/deform/bends/curved_form.h"
 #include "mesh_ops/deform/deform_object.h"
+#include "mesh_ops/deform/form_deformation.h"
 #include "mesh_ops/select/regions.h"
 
 namespace rebake {
 
 namespace {
-
-template <class Form>
-SpaceDeformation deformation_by(const Form& form) {
-  return [form](const std::vector<Vec3>& points) {
-    DeformedPoints result;
-    result.points.resize(points.size());
-    result.jacobians.resize(points.size());
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-      const Deformed one = deform(form, points[i]);
-      result.points[i] = one.point;
-      result.jacobians[i] = one.jacobian;
-    });
-    return result;
-  };
-}
 
 // The node at a time, with the nodes below it; the node itself if nothing in it moves.
 NodePtr node_at(const NodePtr& node, double seconds) {

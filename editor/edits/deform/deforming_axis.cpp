@@ -1,31 +1,11 @@
 #include "editor/edits/deform/deforming_axis.h"
 
-#include <tbb/parallel_for.h>
-
 #include "editor/edits/deform/target_spine.h"
-#include "mesh_ops/deform/bends/curved_form.h"
+#include "mesh_ops/deform/form_deformation.h"
 
 namespace rebake {
 
 namespace {
-
-// Form: ClosedForm or CurvedForm.
-template <class Form>
-Outcome with_form(const Scene& scene, const DeformSet& set, const DeformTarget& target, const Form& form,
-                  const std::vector<std::string>& notes = {}) {
-  const SpaceDeformation deformation = [&](const std::vector<Vec3>& points) {
-    DeformedPoints result;
-    result.points.resize(points.size());
-    result.jacobians.resize(points.size());
-    tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
-      const Deformed one = deform(form, points[i]);
-      result.points[i] = one.point;
-      result.jacobians[i] = one.jacobian;
-    });
-    return result;
-  };
-  return with_deformed(scene, set, target.falloff, deformation, notes);
-}
 
 std::vector<std::string> spine_warnings(const std::vector<Vec3>& spine) {
   for (std::size_t k = 1; k + 1 < spine.size(); ++k)
@@ -100,8 +80,9 @@ AxisForm axis_form(const Scene& scene, const DeformSet& set, const DeformTarget&
 Outcome with_closed_form(const Scene& scene, const DeformTarget& target, const DeformAxis& axis, ClosedForm form) {
   const DeformSet set = deform_set(scene, target);
   const AxisForm made = axis_form(scene, set, target, axis, std::move(form));
-  if (made.spine.empty()) return with_form(scene, set, target, made.form);
-  return with_form(scene, set, target, along_curve(made.form, made.spine), spine_warnings(made.spine));
+  if (made.spine.empty()) return with_deformed(scene, set, target.falloff, deformation_by(made.form));
+  return with_deformed(scene, set, target.falloff, deformation_by(along_curve(made.form, made.spine)),
+                       spine_warnings(made.spine));
 }
 
 }  // namespace rebake
