@@ -62,9 +62,34 @@ std::string with_comment(const std::string& jpeg) {
          jpeg.substr(start);
 }
 
+// Adds metadata that name the program (WebP container specification, sections "Extended File Format" and "Metadata";
+// Exif 2.32, section 4.6).
+std::string with_exif(const std::string& webp, int width, int height, bool has_alpha) {
+  const auto little_endian = [](std::size_t value, int bytes) {
+    std::string text;
+    for (int k = 0; k < bytes; ++k) text += static_cast<char>(value >> 8 * k & 255U);
+    return text;
+  };
+  const auto chunk = [&](const std::string& name, const std::string& bytes) {
+    return name + little_endian(bytes.size(), 4) + bytes + std::string(bytes.size() % 2, '\0');
+  };
+  constexpr std::size_t software = 0x131, ascii = 2;
+  const std::string name("Rebake\0", 7), header("II*\0", 4);
+  const std::size_t first_table = 8, after_table = first_table + 2 + 12 + 4;
+  const std::string exif = header + little_endian(first_table, 4) + little_endian(1, 2) + little_endian(software, 2) +
+                           little_endian(ascii, 2) + little_endian(name.size(), 4) + little_endian(after_table, 4) +
+                           little_endian(0, 4) + name;
+  constexpr std::size_t exif_flag = 0x08, alpha_flag = 0x10, container_header = 12;
+  const std::string extended = little_endian(exif_flag | (has_alpha ? alpha_flag : 0), 4) +
+                               little_endian(static_cast<std::size_t>(width - 1), 3) +
+                               little_endian(static_cast<std::size_t>(height - 1), 3);
+  const std::string body = "WEBP" + chunk("VP8X", extended) + webp.substr(container_header) + chunk("EXIF", exif);
+  return "RIFF" + little_endian(body.size(), 4) + body;
+}
+
 // The first bytes of a file; fewer if it is shorter.
-std::string beginning_of(const std::filesystem::path& path) {
-  std::string bytes(64, '\0');
+std::string beginning_of(const std::filesystem::path& path, std::size_t count = 64) {
+  std::string bytes(count, '\0');
   std::ifstream file(path, std::ios::binary);
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));
@@ -122,7 +147,10 @@ std::string encoded(const Image& image, const std::filesystem::path& path) {
     done = codecs.encode(format->name, image.width, image.height, has_alpha ? 4 : 3, pixels.data(), bytes, error);
   }
   if (!done) throw FileError(path, "cannot be encoded: " + picture_problem(error, path));
-  return format->name == std::string_view("jpeg") ? with_comment(bytes) : bytes;
+  if (format->name == std::string_view("jpeg")) return with_comment(bytes);
+  return format->name == std::string_view("webp")
+             ? with_exif(bytes, image.width, image.height, !image.alpha.empty() && holds_alpha(path))
+             : bytes;
 }
 
 }  // namespace
@@ -186,8 +214,20 @@ bool is_picture_file(const std::filesystem::path& path) { return begins_as_pictu
 
 bool is_rendered_picture(const std::filesystem::path& path) {
   const std::string bytes = beginning_of(path);
-  return (bytes.starts_with("\x89PNG") && bytes.find(software_text) != std::string::npos) ||
-         bytes.starts_with(std::string_view("\xff\xd8\xff\xfe\0\x08Rebake", 12));
+  if (bytes.starts_with("\x89PNG")) return bytes.find(software_text) != std::string::npos;
+  if (bytes.starts_with("\x76\x2f\x31\x01")) {
+    constexpr std::size_t header = 1 << 16;  // attributes may be long
+    return beginning_of(path, header).find(std::string_view("oftware\0string\0\6\0\0\0Rebake", 25)) !=
+           std::string::npos;
+  }
+  if (bytes.starts_with("RIFF")) {
+    constexpr std::streamoff end = 8;  // the program's name, 0 and a byte of padding
+    std::ifstream file(path, std::ios::binary);
+    std::string last(end, '\0');
+    file.seekg(-end, std::ios::end);
+    return file.read(last.data(), end) && last == std::string_view("Rebake\0\0", 8);
+  }
+  return bytes.starts_with(std::string_view("\xff\xd8\xff\xfe\0\x08Rebake", 12));
 }
 
 void write_picture(const Image& image, const std::filesystem::path& path, const SourceGuard& guard) {

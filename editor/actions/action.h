@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -24,6 +25,9 @@ struct ActionType {
   std::vector<FieldInfo> (*fields)();  ///< names, types, defaults and help
   /// Parses an action from its JSON object; node names are looked up in `scene`. Throws FieldError.
   Action (*read)(const nlohmann::json& object, const Scene& scene);
+  /// Files and scenes that the action reads besides the scene, by a static function input_files() of the struct; null
+  /// if it reads none. Throws FileError.
+  std::vector<std::filesystem::path> (*input_files)(const nlohmann::json& object);
 };
 
 /// The ActionType of an action struct; specialised per action.

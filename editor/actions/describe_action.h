@@ -17,6 +17,7 @@ ActionType action_of(const char* help, Describe) {
   type.read = [](const nlohmann::json& object, const Scene& scene) -> Action {
     return [action = read_action<T>(object, scene)](Session& session) { run(session, action); };
   };
+  if constexpr (requires(const nlohmann::json& object) { T::input_files(object); }) type.input_files = T::input_files;
   return type;
 }
 

@@ -19,19 +19,27 @@ namespace rebake {
 
 namespace {
 
-// Whether a file of any name is one that this action wrote.
-bool holds_cameras(const std::filesystem::path& path) {
+bool wrote(const std::filesystem::path& path) {
   const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
-  return root.is_object() && (root.contains("frames") || root.contains("camera_path"));
+  return root.is_object() && root.value("software", nlohmann::json()) == camera_software;
 }
 
-// Cameras in a file are poses that nobody may be able to make again.
+// Cameras in a file are poses that nobody may be able to make again: only files that this action wrote are replaced,
+// and those of earlier versions, which did not name the program, if they hold the same views.
 void refuse_replacing_cameras(const std::filesystem::path& path, const std::vector<std::string>& names) {
-  const CameraFormat* there = camera_format_at(path);
-  if (there == nullptr) return;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error) ||
+      (std::filesystem::is_regular_file(path, error) && std::filesystem::file_size(path, error) == 0))
+    return;
   const auto refuse = [&](const std::string& what) {
-    throw FileError(path, what + ", so it is not replaced; choose another name");
+    throw FileError(path, what + ", so it is not replaced; choose another name, or remove it first");
   };
+  const CameraFormat* there = camera_format_at(path);
+  const bool own = std::filesystem::is_regular_file(path, error) && wrote(path);
+  if (there == nullptr) {
+    if (!own) refuse("exists and is not a camera file of Rebake");
+    return;
+  }
   if (there->write == nullptr) refuse(fmt::format("has cameras in the format {}, which is not written", there->name));
   std::vector<std::string> notes;
   const std::vector<PhotoCamera> cameras = read_cameras(path, "", {}, notes);
@@ -40,7 +48,9 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
   const bool same = std::all_of(cameras.begin(), cameras.end(), [&](const PhotoCamera& camera) {
     return std::find(names.begin(), names.end(), std::filesystem::path(camera.name).stem().string()) != names.end();
   });
-  if (!same && !capture_files(path, cameras).empty()) refuse("has the cameras of photographs beside it");
+  if (same) return;
+  if (!own) refuse("has cameras that Rebake did not write");
+  if (!capture_files(path, cameras).empty()) refuse("has the cameras of photographs beside it");
 }
 
 }  // namespace
@@ -49,10 +59,6 @@ void run(Session& session, const ExportViewsAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
   refuse_replacing_work(action.out);
   session.document.sources().check_file(action.out);
-  if (std::error_code error; std::filesystem::is_regular_file(action.out, error) &&
-                             std::filesystem::file_size(action.out, error) > 0 &&
-                             camera_format_at(action.out) == nullptr && !holds_cameras(action.out))
-    throw FileError(action.out, "exists and is not a camera file, so it is not replaced; choose another name");
   if (action.width < 1 || action.width > 1 << 20) throw FieldError("width", "must lie between 1 and 1048576");
   if (action.height < 1 || action.height > 1 << 20) throw FieldError("height", "must lie between 1 and 1048576");
   const CameraFormat& format = camera_format_named(action.format.name.empty() ? "transforms" : action.format.name);

@@ -19,6 +19,7 @@
 #include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/motion/scene_at.h"
 
 namespace rebake {
@@ -145,8 +146,11 @@ class Film {
     }
     std::string passes;
     for (const std::string& name : action_.content.passes) passes += " " + name;
-    return fmt::format("scene {}, cameras {}, {}x{}{}{}, passes{}", hash_text(picture_hash(scene_, session_.progress)),
-                       hash_text(cameras.value()), width_, height_, action_.content.transparent ? ", transparent" : "",
+    std::string scene = hash_text(picture_hash(scene_, session_.progress));
+    // Objects that are not drawn still cast shadows.
+    if (session_.scene().light != nullptr) scene += hash_text(picture_hash(session_.scene(), session_.progress));
+    return fmt::format("scene {}, cameras {}, {}, {}x{}{}{}, passes{}", scene, hash_text(cameras.value()),
+                       action_.picture, width_, height_, action_.content.transparent ? ", transparent" : "",
                        action_.content.panorama ? ", panorama" : "", passes);
   }
 
@@ -200,8 +204,16 @@ class Film {
 
 }  // namespace
 
+std::vector<fs::path> FilmAction::input_files(const nlohmann::json& object) {
+  const auto path = object.find("path");
+  if (path == object.end() || !path->is_string() || !is_camera_file(path->get<std::string>())) return {};
+  return camera_format_for(path->get<std::string>(), "").files(path->get<std::string>());
+}
+
 void run(Session& session, const FilmAction& action) {
   check_fields(action);
+  for (const fs::path& file : FilmAction::input_files({{"path", action.path}}))
+    session.document.protect_file(file, "a camera file of this run");
   Film(session, action).run();
 }
 

@@ -25,6 +25,9 @@ struct FilmAction {
   std::string codec;            ///< encoder of ffmpeg; empty: by the file's name
   std::string picture = "png";  ///< format of the pictures in a folder
   std::vector<NodeRef> nodes;   ///< only these and their children; empty: all
+
+  /// The files of a camera path.
+  static std::vector<std::filesystem::path> input_files(const nlohmann::json& object);
 };
 template <>
 const ActionType& action_type<FilmAction>();

@@ -102,10 +102,20 @@ std::uint64_t bytes_of(const WebPage& page) {
 
 }  // namespace
 
+std::vector<fs::path> PublishAction::input_files(const nlohmann::json& object) {
+  const auto before = object.find("before");
+  if (before == object.end() || !before->is_string() || before->get<std::string>().empty()) return {};
+  std::vector<fs::path> files{before->get<std::string>()};
+  if (is_project_file(files.front()))
+    for (fs::path& source : project_sources(files.front())) files.push_back(std::move(source));
+  return files;
+}
+
 void run(Session& session, const PublishAction& action) {
   if (action.out.empty()) throw FieldError("out", "is empty");
-  SourceGuard sources = session.document.sources();
-  if (!action.before.empty()) protect_input(sources, action.before);
+  for (const fs::path& file : PublishAction::input_files({{"before", action.before}}))
+    session.document.protect_input(file, "what this run shows as the scene before the edits");
+  const SourceGuard sources = session.document.sources();
   if (action.single_file) {
     if (fs::path(action.out).extension() != ".html") throw FieldError("out", "must end in .html for a single file");
     sources.check_file(action.out);

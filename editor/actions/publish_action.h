@@ -17,6 +17,9 @@ struct PublishAction {
   std::string before;        ///< scene before the edits: a folder, scene or project; empty: none
   bool poster = false;       ///< a picture that shows until the scene is loaded, and in links
   bool transparent = false;  ///< no background
+
+  /// `before`, and the sources of a project.
+  static std::vector<std::filesystem::path> input_files(const nlohmann::json& object);
 };
 template <>
 const ActionType& action_type<PublishAction>();

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "editor/document/document.h"
@@ -31,11 +33,12 @@ class Session {
 
   /// Records a written scene folder and ends the protection of its earlier content.
   void wrote_scene(const std::string& folder, bool exported);
-  std::vector<std::string> exports;   ///< folders written by ExportAction
-  std::vector<std::string> outputs;   ///< pictures, projects and scene folders written by other actions
-  bool below_requested_psnr = false;  ///< an export missed its requested PSNR
-  std::function<void()> after_line;   ///< called after each line of a script, if set
-  Progress progress;                  ///< for long operations
+  std::vector<std::string> exports;  ///< folders written by ExportAction
+  std::vector<std::string> outputs;  ///< pictures, projects and scene folders written by other actions
+  std::multiset<std::filesystem::path> projects_to_come;  ///< absolute paths that later lines of the script save to
+  bool below_requested_psnr = false;                      ///< an export missed its requested PSNR
+  std::function<void()> after_line;                       ///< called after each line of a script, if set
+  Progress progress;                                      ///< for long operations
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< outputs a message of one line
 
   /// Outputs a report line of an edit; by default as a message.

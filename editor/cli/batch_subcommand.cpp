@@ -62,10 +62,11 @@ void print_table(const std::vector<BatchResult>& results) {
 // earlier report that has other hard links, so that their content stays.
 void prepare_report(const std::filesystem::path& report) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(report, error) || std::filesystem::file_size(report, error) == 0) return;
+  if (!std::filesystem::is_regular_file(report, error)) return;
   const std::string text = read_file(report);
   const auto first = nlohmann::json::parse(text.substr(0, text.find('\n')), nullptr, false);
-  if (!first.is_object() || !first.contains("scene") || !first.contains("status") || !first.contains("seconds"))
+  if (!text.empty() &&
+      (!first.is_object() || !first.contains("scene") || !first.contains("status") || !first.contains("seconds")))
     throw FileError(report, "is not a batch report; name another file with --report, or remove this one");
   if (std::filesystem::hard_link_count(report, error) > 1)
     std::filesystem::remove(std::filesystem::canonical(report, error), error);

@@ -64,6 +64,7 @@ void FilmOptions::render(LoadedScene opened, const ViewOptions& view, const Pict
   session.progress = progress_bar();
   session.say = print_message;
   session.document = Document(std::move(opened.scene));
+  session.document.protect_all(opened.sources);
   run(session, action);
 }
 

@@ -34,6 +34,7 @@ void describe_output(SubcommandDescription& command, const char* out_help, const
     LoadedScene opened = load_scenes({options->folder}, options->reading, session.progress);
     session.document = Document(std::move(opened.scene));
     // The sources include the scene or project file that refers to the source folders.
+    session.document.protect_all(opened.sources);
     opened.sources.check_folder(options->out);
     nlohmann::json action = options->fields.object();
     action["out"] = options->out;

@@ -144,8 +144,10 @@ void refuse_replacing_capture(const std::filesystem::path& file, const std::file
   const std::filesystem::path inside =
       std::filesystem::weakly_canonical(file, error)
           .lexically_relative(std::filesystem::weakly_canonical(capture_folder(cameras), error));
-  if (std::filesystem::is_symlink(file, error) || (!inside.empty() && *inside.begin() != ".."))
-    throw FileError(file, "exists in the capture's folder, or is a link; name a new folder for the pictures");
+  const bool in_capture = !inside.empty() && *inside.begin() != "..";
+  if (std::filesystem::is_symlink(file, error) || !is_rendered_picture(file))
+    throw FileError(file, in_capture ? "exists in the capture's folder; name a new folder for the pictures"
+                                     : "exists and was not rendered by Rebake, or is a link; name a new folder");
 }
 
 // Writes a picture for each camera of a file into a folder, named after the photographs.
@@ -162,6 +164,11 @@ void render_photographs(const Rendering& options) {
   for (const std::string& note : notes) write_stderr(fmt::format("warning: {}: {}\n", options.cameras, note));
   for (const std::filesystem::path& file : camera_format_for(options.cameras, format).files(options.cameras))
     sources.add_file(file, "a camera file of this run");
+  // Photographs may be rendered themselves. Other pictures of their names may be those of an earlier run.
+  for (const std::filesystem::path& file : named_photographs(options.cameras, cameras))
+    sources.add_file(file, "a photograph of the capture");
+  for (const std::filesystem::path& file : captured_files_at(options.out, named_photographs))
+    sources.add_file(file, "a photograph of the capture there");
   for (const std::filesystem::path& file : capture_files(options.cameras, cameras))
     if (!is_rendered_picture(file)) sources.add_file(file, "a file of the capture");
   for (const std::filesystem::path& file : captured_files_at(options.out))

@@ -43,6 +43,8 @@ class Document {
   void protect_input(const std::filesystem::path& source, const std::string& role) {
     ::rebake::protect_input(imported_, source, role);
   }
+  /// Protects all sources of a guard.
+  void protect_all(const SourceGuard& guard) { imported_.add_all(guard, "a file that this run reads"); }
   /// Protects the files in a scene folder: protect_scene_contents().
   void protect_contents(const std::filesystem::path& folder, const std::string& role) {
     protect_scene_contents(imported_, folder, role);

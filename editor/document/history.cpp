@@ -106,6 +106,12 @@ std::optional<Scene> History::before_last_step() const {
   return steps_[steps_[position_ + 1 - undo_step()].base].scene;
 }
 
+std::optional<std::pair<Scene, Scene>> History::scenes_around(std::size_t first, std::size_t count) const {
+  const std::optional<Scene>&before = steps_[steps_[first + 1].base].scene, &after = steps_[first + count].scene;
+  if (!before || !after) return std::nullopt;
+  return std::pair(*before, *after);
+}
+
 std::size_t History::replaced_by_last_step() const {
   if (position_ == 0) return 0;
   const std::size_t first = position_ + 1 - undo_step();

@@ -41,6 +41,8 @@ class History {
   std::size_t redo_step() const;
   /// The scene that the last step was applied to, if it is cached.
   std::optional<Scene> before_last_step() const;
+  /// The scenes before and after `count` edits from number `first`, from 0, if both are cached.
+  std::optional<std::pair<Scene, Scene>> scenes_around(std::size_t first, std::size_t count) const;
   /// Number of edits before the last step that the step replaces.
   std::size_t replaced_by_last_step() const;
   /// The scene after the first `edits` edits (at most undo_count()); recomputed if not cached. Throws as undo() does.

@@ -96,7 +96,7 @@ Parsed parse(const fs::path& path, std::string_view bytes) {
       parsed.good_bytes = begin;
       parsed.ends_in_newline = ends;
       if (newline_damaged) break;
-    } else if (number > 0 && !ends) {
+    } else if (number > 0 && !ends && line.find('\0') == std::string_view::npos) {
       contents.torn = true;  // the program ended while it wrote this last line
     } else if (number > 0) {
       contents.damaged_line = number + 1;
@@ -121,22 +121,22 @@ class Journal::File {
   }
 
   Contents resume() {
-    Parsed parsed = parse(path_, read_file(path_));
+    const std::string bytes = read_file(path_);
+    Parsed parsed = parse(path_, bytes);
     end_ = parsed.good_bytes;
     next_ = parsed.contents.entries.size() + (parsed.begun ? 1 : 0);
     damaged_ = parsed.contents.damaged_line != 0;
-    if (damaged_) return std::move(parsed.contents);
-    if (file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
-    if (!parsed.begun) append({json{{"rebake_journal", journal_version}}});
-    if (!parsed.ends_in_newline) append_text("\n");
+    const bool whole = end_ == bytes.size() && parsed.begun && parsed.ends_in_newline;
+    if (!whole) torn_ = Torn{bytes.size(), parsed.begun, parsed.ends_in_newline};
     return std::move(parsed.contents);
   }
 
   void append(const std::vector<json>& entries) {
     if (damaged_) throw FileError(path_, "is damaged, so no edit can be added; recover it with rebake recover");
-    if (!is_in_place() || size() != end_)
+    if (!is_in_place() || size() != (torn_ ? torn_->bytes : end_))
       throw FileError(
           path_, "was removed, replaced or changed by another program, so it no longer protects this work; save now");
+    mend();
     std::string lines;
     std::uint64_t next = next_;
     for (json entry : entries) {
@@ -154,6 +154,23 @@ class Journal::File {
   }
 
  private:
+  // The end of a file whose last line is incomplete.
+  struct Torn {
+    std::uint64_t bytes;  // size of the file
+    bool begun;           // has its first line
+    bool ends_in_newline;
+  };
+
+  // Removes an incomplete last line before the first append; a journal that is only read stays as it is.
+  void mend() {
+    if (!torn_) return;
+    const Torn torn = *torn_;
+    if (file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
+    torn_.reset();
+    if (!torn.begun) append({json{{"rebake_journal", journal_version}}});
+    if (!torn.ends_in_newline) append_text("\n");
+  }
+
   // Writes at the end and syncs.
   void append_text(std::string_view text) {
     std::string_view rest = text;
@@ -210,6 +227,7 @@ class Journal::File {
   std::uint64_t end_ = 0;
   std::uint64_t next_ = 0;
   bool damaged_ = false;
+  std::optional<Torn> torn_;
 };
 
 Journal::Journal(std::unique_ptr<File> file) : file_(std::move(file)) {}

@@ -26,8 +26,8 @@ class Journal {
   /// Creates a journal with these entries, all on the disk on return. Throws FileError if the file exists (it may
   /// contain unsaved work) or cannot be written.
   static Journal create(const std::filesystem::path& path, const std::vector<nlohmann::json>& entries);
-  /// Opens a journal for appending: truncates a torn last line. A damaged journal is left unchanged and refuses further
-  /// entries. Locks the file. Throws FileError as read() does, and if another process has locked it.
+  /// Opens a journal for appending; the first append removes a torn last line. A damaged journal is left unchanged and
+  /// refuses further entries. Locks the file. Throws FileError as read() does, and if another process has locked it.
   static Journal resume(const std::filesystem::path& path, Contents& contents);
 
   ~Journal();

@@ -95,6 +95,16 @@ std::vector<std::string> write_project(const fs::path& path, const std::vector<H
   return warnings;
 }
 
+std::vector<fs::path> project_sources(const fs::path& path) {
+  const json root = json::parse(read_file(path), nullptr, false);
+  std::vector<fs::path> sources;
+  if (!root.is_object() || !root.contains("sources") || !root.at("sources").is_array()) return sources;
+  for (const json& source : root.at("sources"))
+    if (source.is_object() && source.contains("path") && source.at("path").is_string())
+      sources.push_back(source_path(real_folder_of(path), source.at("path")));
+  return sources;
+}
+
 void read_project(const fs::path& path, const EditVisitor& each, const SourceLinks& links, const Progress& progress) {
   const fs::path folder = real_folder_of(path);
   try {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "mesh_ops/scene/scene.h"
@@ -11,6 +12,23 @@ namespace rebake {
 namespace {
 
 std::size_t selected_of(const Node& node) { return node.selection ? count(*node.selection) : 0; }
+
+// Number of triangles with a corner elsewhere; 0 if the triangles of both objects do not correspond.
+std::size_t moved_between(const BakedObject& before, const BakedObject& after) {
+  if (before.sets.size() != after.sets.size()) return 0;
+  std::size_t moved = 0;
+  for (std::size_t s = 0; s < before.sets.size(); ++s) {
+    const Soup &old = before.sets[s].soup, &now = after.sets[s].soup;
+    if (old.faces().size() != now.faces().size()) return 0;
+    if (&old.positions() == &now.positions()) continue;
+    for (std::size_t f = 0; f < old.faces().size(); ++f)
+      moved += std::equal(old.faces()[f].begin(), old.faces()[f].end(), now.faces()[f].begin(),
+                          [&](std::uint32_t a, std::uint32_t b) { return old.positions()[a] == now.positions()[b]; })
+                   ? 0
+                   : 1;
+  }
+  return moved;
+}
 
 }  // namespace
 
@@ -39,6 +57,7 @@ SceneChange change_between(const Scene& before, const Scene& after) {
     change.selected_before += selected_of(old);
     if (old.object) change.triangles_before += old.object->triangle_count();
     if (!node) continue;
+    if (old.object && node->object) change.moved += moved_between(*old.object, *node->object);
     change.selected_after += selected_of(*node);
     if (selected_of(*node) > 0) change.with_selected.push_back(node->name);
     if (node->object) change.triangles_after += node->object->triangle_count();

@@ -74,6 +74,8 @@ std::vector<FilmFrame> frames_of_file(const FilmPath& path, double& fps, std::ve
 
 }  // namespace
 
+bool is_camera_file(const std::string& path) { return path != "keys" && path != "views" && path != "turntable"; }
+
 std::vector<Camera> cameras_through(const std::vector<Camera>& views, std::size_t count) {
   const Keyframes<Camera> keys = keys_through(views, 1);
   std::vector<Camera> cameras;

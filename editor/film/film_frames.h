@@ -14,6 +14,9 @@ struct FilmFrame {
   Camera camera;
 };
 
+/// Whether a film's path is a camera file, not one of the words keys, views and turntable.
+bool is_camera_file(const std::string& path);
+
 /// Where the camera of a film goes, and for how long.
 struct FilmPath {
   /// keys: the camera's keyframes, or standing still; views: through all stored views in natural order; turntable: once

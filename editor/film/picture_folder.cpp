@@ -65,24 +65,24 @@ nlohmann::json record_in(const fs::path& folder) {
 
 // Whether a name is that of a picture, or of the record, whose writing was killed.
 bool is_leftover(const std::string& name, const std::set<std::string>& pictures) {
-  if (!name.ends_with(".partial")) return false;
-  return name.starts_with(std::string(record) + ".") ||
-         std::any_of(pictures.begin(), pictures.end(),
-                     [&](const std::string& picture) { return name.starts_with(picture + "."); });
+  return is_partial_of(name, record) || std::any_of(pictures.begin(), pictures.end(), [&](const std::string& picture) {
+           return is_partial_of(name, picture);
+         });
 }
 
-// The pictures of the film that a folder holds. Throws FileError if it holds anything else.
+// The pictures of the film that a folder holds; removes leftovers of killed runs. Throws FileError if it holds anything
+// else, and removes nothing then.
 std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json& known) {
   std::set<std::string> names;
   if (known.is_object())
     for (std::size_t k = 0; k < known.value("count", std::size_t{0}); ++k)
       names.insert(picture_name(k, known.value("extension", "")));
-  std::vector<fs::path> pictures;
+  std::vector<fs::path> pictures, leftovers;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (known.is_object() && name == record) continue;
     if (is_leftover(name, names)) {
-      remove_file(entry.path());
+      leftovers.push_back(entry.path());
       continue;
     }
     if (!names.contains(name) || !entry.is_regular_file() || entry.is_symlink())
@@ -92,6 +92,7 @@ std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json
                           : "exists and is not a film's folder; choose a new or empty folder");
     pictures.push_back(entry.path());
   }
+  for (const fs::path& leftover : leftovers) remove_file(leftover);
   return pictures;
 }
 
@@ -135,6 +136,7 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
   std::error_code error;
   if (fs::exists(folder_, error)) {
     if (!fs::is_directory(folder_)) throw FileError(folder_, "is a file; name a folder, or a .mp4 or .webm file");
+    lock();
     const nlohmann::json before = record_in(folder_);
     const std::vector<fs::path> pictures = film_pictures(folder_, before);
     if (before.is_object() && before.value("content", "") == content) return;
@@ -150,10 +152,16 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
   }
   fs::create_directories(folder_, error);
   if (error) throw FileError(folder_, "cannot be created: " + error.message());
+  if (!lock_) lock();
   write_file_atomically(
       folder_ / record,
       nlohmann::json{{mark, 1}, {"content", content}, {"count", count}, {"extension", extension_}}.dump(1) + "\n",
       sources);
+}
+
+void PictureFolder::lock() {
+  lock_.emplace(folder_, FolderLock::Wait::no);
+  if (!lock_->held()) throw FileError(folder_, "is in use: another run writes its film there");
 }
 
 void PictureFolder::remove() const {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
+#include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/scene/scene.h"
@@ -18,8 +20,8 @@ std::uint64_t picture_hash(const Scene& scene, const Progress& progress = {});
 class PictureFolder {
  public:
   /// Opens or creates the folder of a film of `count` pictures. `content`: text that identifies the film. If the folder
-  /// holds pictures of another one, they are removed if `replaces`. Throws FileError if they are not, and if the folder
-  /// has other files.
+  /// holds pictures of another one, they are removed if `replaces`. Throws FileError if they are not, if the folder has
+  /// other files, and if another run writes to it.
   PictureFolder(std::filesystem::path folder, std::string extension, std::size_t count, const std::string& content,
                 bool replaces, const SourceGuard& sources);
   /// Removes the pictures, film.json and the folder. Throws FileError if it has other files by now.
@@ -33,7 +35,11 @@ class PictureFolder {
   std::size_t removed() const { return removed_; }  ///< number of pictures of another film that were removed
 
  private:
+  // Locks the folder, or throws FileError if another run writes to it.
+  void lock();
+
   std::filesystem::path folder_;
+  std::optional<FolderLock> lock_;
   std::string extension_;
   std::size_t removed_ = 0;
 };

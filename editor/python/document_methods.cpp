@@ -29,14 +29,43 @@ namespace rebake {
 
 namespace {
 
+// Runs work and returns its messages.
+template <class Work>
+std::vector<std::string> messages_of(Session& session, const Work& work) {
+  std::vector<std::string> lines;
+  const auto say = std::exchange(session.say, [&lines](const std::string& text) { lines.push_back(text); });
+  try {
+    work();
+  } catch (...) {
+    session.say = say;
+    throw;
+  }
+  session.say = say;
+  return lines;
+}
+template <class ActionStruct>
+std::vector<std::string> notes_of(Session& session, const ActionStruct& action) {
+  return messages_of(session, [&] { run(session, action); });
+}
+
+// Raises a Python warning for each message that is marked as a note or warning.
+void warn(const std::vector<std::string>& messages) {
+  for (const std::string& message : messages)
+    for (const std::string_view mark : {"note: ", "warning: "})
+      if (message.starts_with(mark) && PyErr_WarnEx(PyExc_UserWarning, message.substr(mark.size()).c_str(), 1) != 0)
+        throw py::error_already_set();
+}
+
 Edit edit_once(PyDocument& document, const json& line) {
   std::optional<Edit> made;
+  std::vector<std::string> messages;
   document.work([&](Session& session) {
     session.document.protect_files_of(line);
     check_boxes(line);
     made = read_edit(line, session.scene());
-    session.edit(*made);
+    messages = messages_of(session, [&] { session.edit(*made); });
   });
+  warn(messages);
   return *made;
 }
 
@@ -83,21 +112,6 @@ py::object edit_with(PyDocument& document, const std::string& op, const py::dict
   line["op"] = op;
   const Edit edit = edit_once(document, line);
   return edit.type().selects ? py::object(selections_of(document)) : py::none();
-}
-
-// Runs an action and returns its messages.
-template <class ActionStruct>
-std::vector<std::string> notes_of(Session& session, const ActionStruct& action) {
-  std::vector<std::string> notes;
-  const auto say = std::exchange(session.say, [&notes](const std::string& text) { notes.push_back(text); });
-  try {
-    run(session, action);
-  } catch (...) {
-    session.say = say;
-    throw;
-  }
-  session.say = say;
-  return notes;
 }
 
 std::vector<std::string> export_with(PyDocument& document, const py::dict& fields) {
@@ -196,13 +210,17 @@ void add_document_methods(py::class_<PyDocument>& type) {
         std::vector<std::string> warnings;
         document.work([&](Session& session) {
           if (path.extension() != ".rebake") {
-            run(session, SaveAction{path.string()});
+            // Another spelling of the extension would make a scene folder of that name.
+            std::string lower = path.extension().string();
+            std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+            if (lower == ".rebake") throw FileError(path, "must end in .rebake, in small letters, to be a project");
+            warnings = notes_of(session, SaveAction{path.string()});
             return;
           }
-          warnings = session.document.save(path, session.progress);
+          for (const std::string& warning : session.document.save(path, session.progress))
+            warnings.push_back("warning: " + warning);
         });
-        for (const std::string& warning : warnings)
-          if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
+        warn(warnings);
       },
       py::arg("path"),
       "Writes a project (.rebake), or a scene folder with all nodes. Another project with more edits is not replaced.");

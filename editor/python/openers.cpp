@@ -70,6 +70,8 @@ std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journa
                        .c_str(),
                    1) != 0)
     throw py::error_already_set();
+  if (recovered->torn)
+    recovered->lost.insert(recovered->lost.begin(), "the last edit, whose line in the journal is incomplete");
   for (const std::string& lost : recovered->lost)
     if (PyErr_WarnEx(PyExc_UserWarning, ("not recovered: " + lost).c_str(), 1) != 0) throw py::error_already_set();
   auto document = std::make_unique<PyDocument>(std::move(recovered->document));

@@ -9,6 +9,7 @@
 #include "editor/edits/support.h"
 #include "editor/fields/codec.h"
 #include "editor/fields/field_info.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -40,6 +41,25 @@ std::string reference_of(const char* op, const char* help, const std::vector<Fie
                                                                         : "`" + line.initial + "`",
                        line.help);
   return out + '\n';
+}
+
+// The projects that a script saves; lines with errors are left to run_script().
+std::multiset<std::filesystem::path> saved_projects(const std::string& text,
+                                                    const std::map<std::string, std::string>& variables) {
+  std::multiset<std::filesystem::path> projects;
+  std::istringstream lines{text};
+  for (std::string line; std::getline(lines, line);) {
+    const std::string_view command = command_text(line);
+    if (command.find("save_project") == std::string_view::npos) continue;
+    try {
+      const json filled = with_variables(read_line(command), variables);
+      if (filled.is_object() && filled.value("op", "") == "save_project")
+        projects.insert(absolute_path(filled.value("out", "")));
+    } catch (const std::exception&) {
+      continue;
+    }
+  }
+  return projects;
 }
 
 }  // namespace
@@ -103,6 +123,7 @@ std::string with_line_feeds(std::string_view text) {
 void run_script(Session& session, std::string_view text, const std::filesystem::path& name,
                 const std::map<std::string, std::string>& variables) {
   std::istringstream lines{with_line_feeds(text)};
+  session.projects_to_come = saved_projects(lines.str(), variables);
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;

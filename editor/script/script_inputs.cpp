@@ -14,10 +14,13 @@ using nlohmann::json;
 
 namespace {
 
-// Appends the files of an edit that reads more than its source. Its node may not exist yet, and has no influence on
-// them.
+// Appends the files that an action reads, and those of an edit that reads more than its source. Its node may not exist
+// yet, and has no influence on them.
 void add_input_files(json line, std::vector<ScriptInput>& inputs) {
   const std::string op = line.value("op", "");
+  for (const ActionType* action : action_types())
+    if (op == action->op && action->input_files != nullptr)
+      for (std::filesystem::path& file : action->input_files(line)) inputs.push_back({std::move(file), false});
   const auto types = edit_types();
   const auto type = std::find_if(types.begin(), types.end(), [&](const EditType* one) { return op == one->op; });
   if (type == types.end() || (*type)->input_files == nullptr) return;

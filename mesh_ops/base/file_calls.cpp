@@ -22,6 +22,12 @@ int FileCalls::rename(const char* from, const char* to, unsigned flags) {
 }
 int FileCalls::unlink(const char* path) { return ::unlink(path); }
 int FileCalls::stat(const char* path, struct stat* about) { return ::stat(path, about); }
+std::int64_t FileCalls::birth_time(const char* path) {
+  struct statx about {};
+  if (::statx(AT_FDCWD, path, 0, STATX_BTIME, &about) != 0 || (about.stx_mask & STATX_BTIME) == 0) return 0;
+  constexpr std::int64_t nanoseconds = 1'000'000'000;
+  return about.stx_btime.tv_sec * nanoseconds + about.stx_btime.tv_nsec;
+}
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <cstdint>
 
 namespace rebake {
 
@@ -22,6 +23,8 @@ class FileCalls {
   virtual int rename(const char* from, const char* to, unsigned flags);
   virtual int unlink(const char* path);
   virtual int stat(const char* path, struct stat* about);
+  /// When a file was created, in nanoseconds; 0 if the file system does not tell.
+  virtual std::int64_t birth_time(const char* path);
 };
 
 /// The instance in use.

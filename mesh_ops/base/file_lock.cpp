@@ -20,11 +20,15 @@ FileLock::FileLock(const std::filesystem::path& path)
 
 FileLock::~FileLock() { ::close(file_); }
 
-FolderLock::FolderLock(const std::filesystem::path& folder)
+FolderLock::FolderLock(const std::filesystem::path& folder, Wait wait)
     : folder_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   constexpr std::chrono::milliseconds patience{10000}, pause{20};
   const auto end = std::chrono::steady_clock::now() + patience;
   while (folder_ >= 0 && ::flock(folder_, LOCK_EX | LOCK_NB) != 0 && (errno == EWOULDBLOCK || errno == EINTR)) {
+    if (wait == Wait::no && errno == EWOULDBLOCK) {
+      held_ = false;
+      return;
+    }
     if (std::chrono::steady_clock::now() > end) {
       ::close(folder_);
       throw FileError(folder, "is locked by another program that writes a project there; try again");

@@ -26,14 +26,19 @@ class FileLock {
 /// without locks.
 class FolderLock {
  public:
-  /// Waits up to ten seconds; then throws FileError.
-  explicit FolderLock(const std::filesystem::path& folder);
+  enum class Wait { ten_seconds, no };
+  /// If another lock is held, waits ten seconds and then throws FileError, or returns without lock.
+  explicit FolderLock(const std::filesystem::path& folder, Wait wait = Wait::ten_seconds);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
+  /// False if another lock is held.
+  bool held() const { return held_; }
+
  private:
   int folder_;
+  bool held_ = true;
 };
 
 }  // namespace rebake

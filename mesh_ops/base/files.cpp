@@ -115,13 +115,6 @@ std::string partial_name(const std::string& name) {
   return result;
 }
 
-bool is_partial_of(const std::string& name, const std::string& of) {
-  constexpr std::string_view ending = ".partial";
-  if (name.size() != of.size() + 9 + ending.size() || !name.starts_with(of) || !name.ends_with(ending)) return false;
-  const std::string digits = name.substr(of.size(), 9);
-  return digits[0] == '.' && digits.find_first_not_of("0123456789abcdef", 1) == std::string::npos;
-}
-
 // True if a file system is mounted at the path or below it; its files must not be removed.
 bool holds_mount(const fs::path& path) {
   const auto is_mount = [](const fs::path& at) {
@@ -292,6 +285,13 @@ void sync_folder(const fs::path& folder) {
   file_calls().close(descriptor);
   errno = error;
   if (!done) fail(named, "cannot be synced to disk");
+}
+
+bool is_partial_of(const std::string& name, const std::string& of) {
+  constexpr std::string_view ending = ".partial";
+  if (name.size() != of.size() + 9 + ending.size() || !name.starts_with(of) || !name.ends_with(ending)) return false;
+  const std::string digits = name.substr(of.size(), 9);
+  return digits[0] == '.' && digits.find_first_not_of("0123456789abcdef", 1) == std::string::npos;
 }
 
 void write_file_atomically(const fs::path& named, std::string_view bytes, const SourceGuard& guard) {

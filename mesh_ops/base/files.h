@@ -44,6 +44,9 @@ std::string read_input(const std::filesystem::path& path, std::uint64_t most = s
 /// not support it are ignored.
 void sync_folder(const std::filesystem::path& folder);
 
+/// Whether `name` is that of a file or folder named `of` while it is written: "OF.<8 hexadecimal digits>.partial".
+bool is_partial_of(const std::string& name, const std::string& of);
+
 /// Replaces a file atomically and durably: writes and syncs a temporary file beside it, renames it, and syncs the
 /// folder. Devices and pipes are written directly. Removes leftovers of killed writes. Throws FileError, also if the
 /// existing file is write-protected or `guard` protects `path`.

@@ -57,11 +57,14 @@ void for_each_entry(const fs::path& folder, const Visit& visit) {
 std::vector<SourceGuard::Identity> SourceGuard::identity_of(const fs::path& path) {
   struct stat about {};
   if (file_calls().stat(path.c_str(), &about) != 0) return {};
-  return {{about.st_dev, about.st_ino}};
+  return {{about.st_dev, about.st_ino, file_calls().birth_time(path.c_str())}};
 }
 
 bool SourceGuard::was_seen(const Source& source, const std::vector<Identity>& there) {
-  return !there.empty() && std::find(source.seen.begin(), source.seen.end(), there.front()) != source.seen.end();
+  // Another birth: the file was removed since, and a new one has its inode.
+  return !there.empty() && std::any_of(source.seen.begin(), source.seen.end(), [&](const Identity& one) {
+    return one == there.front() && (one.born == there.front().born || one.born == 0 || there.front().born == 0);
+  });
 }
 
 bool SourceGuard::is_same(const Source& source, const fs::path& path) {

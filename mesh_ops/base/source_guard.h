@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -43,7 +44,8 @@ class SourceGuard {
   struct Identity {
     dev_t device;
     ino_t inode;
-    bool operator==(const Identity&) const = default;
+    std::int64_t born = 0;  ///< nanoseconds; 0: the file system does not tell
+    bool operator==(const Identity& other) const { return device == other.device && inode == other.inode; }
   };
   struct Source {
     std::filesystem::path path;  ///< canonical

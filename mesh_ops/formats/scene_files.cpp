@@ -27,6 +27,18 @@ bool is_scene(const fs::path& path) {
   }
 }
 
+// Hash of the names and contents of all files below a folder, as of films and web pages.
+std::uint64_t files_hash(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files.push_back(entry.path().lexically_relative(folder));
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const fs::path& file : files)
+    all += fmt::format("{} {:016x}\n", file.generic_string(), content_hash(read_file(folder / file)));
+  return content_hash(all);
+}
+
 }  // namespace
 
 fs::path scene_root(const fs::path& path) {
@@ -62,7 +74,7 @@ std::uint64_t content_hash_at(const fs::path& path) {
   const bool is_folder = fs::is_directory(root, error);
   if (is_folder && format_at(root) != nullptr) return folder_hash(path);
   if (camera_format_at(path) != nullptr) return camera_hash(path);
-  if (is_folder) return folder_hash(path);
+  if (is_folder) return files_hash(root);
   const std::vector<fs::path> beside = scene_files(path);
   if (beside.empty()) return content_hash(read_file(path));
   std::string all = fmt::format("{:016x}\n", content_hash(read_file(path)));

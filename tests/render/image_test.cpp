@@ -50,6 +50,23 @@ TEST(Image, ExtensionsDecideTheFormat) {
   }
 }
 
+TEST(Image, RecognisesWhatItWroteAndWritesTheSameBytes) {
+  const TemporaryFolder folder;
+  Image transparent = colorful();
+  transparent.alpha.assign(transparent.rgb.size() / 3, 128);
+  for (const char* extension : {".png", ".jpg", ".webp", ".exr"})
+    for (const Image& image : {colorful(), transparent}) {
+      const auto path = folder.path() / (std::string("a") + extension);
+      write_picture(image, path, {});
+      EXPECT_TRUE(is_rendered_picture(path)) << extension;
+      const std::string bytes = read_file(path);
+      write_picture(image, path, {});
+      EXPECT_EQ(read_file(path), bytes) << extension;
+    }
+  write_file_atomically(folder.path() / "foreign.webp", "RIFF\x04\0\0\0WEBP", {});
+  EXPECT_FALSE(is_rendered_picture(folder.path() / "foreign.webp"));
+}
+
 TEST(Image, JpegsAreCloseToTheOriginal) {
   const TemporaryFolder folder;
   write_picture(colorful(), folder.path() / "a.jpg", {});

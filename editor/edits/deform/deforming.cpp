@@ -263,6 +263,9 @@ std::vector<std::string> cage_warnings(const Cage& cage, const std::vector<Vec3>
     notes.push_back(fmt::format("the cage intersects itself ({} pairs of triangles)", pairs));
   else if (const std::size_t after = self_intersections({moved, cage.faces}); after > 0)
     notes.push_back(fmt::format("the moved cage intersects itself ({} pairs of triangles)", after));
+  else if (const std::size_t nested = nested_components(cage); nested > 0)
+    notes.push_back(
+        fmt::format("the cage has parts inside others ({}); turn their triangles over to make them cavities", nested));
   return notes;
 }
 

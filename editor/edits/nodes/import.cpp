@@ -21,11 +21,14 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
   if (!edit.content.empty() && hash_text(content_hash_at(edit.path)) != edit.content)
     throw EditError(edit.path + ": has changed since it was imported; restore the original files");
   const Scene read = read_any(edit.path, {edit.axes, edit.dialect()}, progress);
-  if (read.roots.empty()) throw EditError(edit.path + ": contains no objects");
+  const bool empty = read.roots.empty();
+  if (empty && read.views.empty() && read.camera_keys.empty() && read.light == nullptr &&
+      read.background == Scene{}.background && read.ground == Ground{})
+    throw EditError(edit.path + ": contains no objects");
   Node node;
   if (read.roots.size() == 1) {
     node = without_ids(*read.roots.front());
-  } else {
+  } else if (!empty) {
     node.name = folder_title(edit.path);
     for (const NodePtr& root : read.roots) node.children.push_back(std::make_shared<const Node>(without_ids(*root)));
   }
@@ -34,16 +37,17 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
       throw FieldError("as", "\"" + edit.as + "\" is already the name of another node; choose another name");
     node.name = edit.as;
   }
-  Scene result = with_added(scene, std::move(node), NodeId::none, scene.roots.size());
+  Scene result = empty ? scene : with_added(scene, std::move(node), NodeId::none, scene.roots.size());
   std::vector<std::string> dropped;
   for (const auto& [name, camera] : read.views)
     if (const auto [known, fresh] = result.views.try_emplace(name, camera); !fresh && known->second != camera)
       dropped.push_back(fmt::format("the view \"{}\"", name));
-  // The first import also sets the background, the ground and the light, unless edits have set them before.
+  // The first import also sets the background, the ground and the light, unless the scene has others than the default.
   const bool first = scene.roots.empty();
+  std::vector<std::string> taken;
   const auto take = [&](const char* what, bool states, bool is_free) {
     const bool takes = states && first && is_free;
-    if (states && !takes) dropped.emplace_back(what);
+    if (states) (takes ? taken : dropped).emplace_back(what);
     return takes;
   };
   if (take("its background", read.background != Scene{}.background && read.background != scene.background,
@@ -58,6 +62,8 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
   else if (const Box box = world_bounds(result); edit.ground && !box.isEmpty())
     set_ground(result, {Vec3::UnitY(), box.min().y()});
   Report report;
+  if (empty) report.lines.push_back(fmt::format("note: {}: contains no objects", edit.path));
+  if (!taken.empty()) report.lines.push_back(fmt::format("{}: also imported {}", edit.path, fmt::join(taken, ", ")));
   if (!dropped.empty())
     report.lines.push_back(
         fmt::format("note: {}: not imported, because the scene has its own: {}", edit.path, fmt::join(dropped, ", ")));

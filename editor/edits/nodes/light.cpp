@@ -16,7 +16,9 @@ namespace {
 constexpr std::array<std::string_view, 4> source_words{"estimated", "uniform", "sky", "picture"};
 
 void check_light(const Vec3& color, const char* field) {
-  if (!color.allFinite() || (color.array() < 0).any()) throw FieldError(field, "must be finite and not negative");
+  constexpr double brightest = 1e6;  // scene.json holds no more
+  if (!color.allFinite() || (color.array() < 0).any() || (color.array() > brightest).any())
+    throw FieldError(field, "must lie between 0 and 1000000");
 }
 
 // Sets the effects; returns false for "none": light stays as baked.
@@ -85,8 +87,8 @@ Scene apply(const Scene& scene, const LightEdit& edit) {
   check_light(light->bounce, "bounce");
   if (!light->sun.direction.allFinite() || !(light->sun.direction.stableNorm() > 0))
     throw FieldError("sun", "must be a finite direction that is not zero");
-  if (!(edit.sun_degrees > 0 && edit.sun_degrees <= 45))
-    throw FieldError("sun_degrees", "must be above 0 and at most 45");
+  if (!(edit.sun_degrees >= 0.006 && edit.sun_degrees <= 45))
+    throw FieldError("sun_degrees", "must lie between 0.006 and 45");
   light->sun.radius = edit.sun_degrees * std::numbers::pi / 180;
   light->sun.direction.stableNormalize();
   const auto word = std::find(source_words.begin(), source_words.end(), edit.light_source());

@@ -6,7 +6,7 @@ namespace rebake {
 
 Scene apply(const Scene& scene, const SelectPicture& edit) {
   const std::vector<PlacedNode> targets = selectable(scene, edit.node);
-  const PictureRegion region(scene, edit.picture);
+  const PictureRegion region(scene, edit.picture, targets);
   if (edit.through)
     return with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
       return projected_triangles(*placed.node->object, placed.to_world, region.projector(), region.mask(),

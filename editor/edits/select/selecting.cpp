@@ -18,15 +18,15 @@ namespace rebake {
 
 namespace {
 
-Picture picture_of(const Scene& scene, const PictureFields& fields) {
+Picture picture_of(const Scene& scene, const PictureFields& fields, const std::vector<PlacedNode>& targets) {
   if (fields.camera.has_value() == !fields.view.empty())
     throw FieldError("camera", "exactly one of view and camera must be given");
   Picture picture{fields.camera.value_or(Camera{}), fields.size.width, fields.size.height};
   if (!fields.view.empty()) picture.camera = stored_view(scene, fields.view);
-  // Includes hidden nodes, because a hidden node can be selected on if it is named.
   Box bounds;
-  for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->object) bounds.extend(transformed(placed.node->object->bounds(), placed.to_world));
+  for (const std::vector<PlacedNode>& placed_objects : {visible_objects(scene), targets})
+    for (const PlacedNode& placed : placed_objects)
+      if (placed.node->object) bounds.extend(transformed(placed.node->object->bounds(), placed.to_world));
   picture.camera =
       with_planes(picture.camera, bounds, static_cast<double>(picture.width) / std::max(1, picture.height));
   return picture;
@@ -194,8 +194,8 @@ Scene with_repeated_morphology(const Scene& scene, const std::optional<NodeRef>&
   });
 }
 
-PictureRegion::PictureRegion(const Scene& scene, const PictureFields& fields)
-    : projector_(picture_of(scene, fields)),
+PictureRegion::PictureRegion(const Scene& scene, const PictureFields& fields, const std::vector<PlacedNode>& targets)
+    : projector_(picture_of(scene, fields, targets)),
       mask_(mask_of(fields)),
       depth_(fields.depth.value_or(Interval{0, std::numeric_limits<double>::infinity()})) {
   for (int y = 0; y < mask_.height; ++y)

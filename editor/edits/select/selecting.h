@@ -91,7 +91,8 @@ struct PictureFields {
 /// FieldError for contradictory fields.
 class PictureRegion {
  public:
-  PictureRegion(const Scene& scene, const PictureFields& fields);
+  /// Near and far planes that are not given are fitted to the visible objects and `targets`, which may be hidden.
+  PictureRegion(const Scene& scene, const PictureFields& fields, const std::vector<PlacedNode>& targets);
   const Projector& projector() const { return projector_; }
   const PixelMask& mask() const { return mask_; }
   double nearest() const { return depth_.min; }

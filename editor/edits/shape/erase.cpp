@@ -41,7 +41,7 @@ Outcome apply(const Scene& scene, const Erase& edit) {
       int{edit.box.has_value()} + int{edit.sphere.has_value()} + int{edit.half_space.has_value()} + int{in_picture};
   if (ways != 1) throw FieldError("box", "exactly one of box, sphere, half_space and a picture region must be given");
   if (in_picture) {
-    const PictureRegion region(scene, edit.picture);
+    const PictureRegion region(scene, edit.picture, targets);
     const std::optional<SceneRays> rays =
         edit.through ? std::nullopt : std::optional(rays_through(visible_objects(scene)));
     return erased(scene, targets, [&](const PlacedNode& placed) {

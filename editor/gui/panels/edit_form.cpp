@@ -29,10 +29,11 @@ const FieldInfo* field_named(const std::vector<FieldInfo>& fields, const char* n
   return found == fields.end() ? nullptr : &*found;
 }
 
+// Selected triangles that other edits change: not those in hidden and locked nodes.
 std::size_t selected_in(const Scene& scene) {
   std::size_t triangles = 0;
   for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->selection) triangles += count(*placed.node->selection);
+    if (placed.node->selection && placed.visible && !placed.locked) triangles += count(*placed.node->selection);
   return triangles;
 }
 

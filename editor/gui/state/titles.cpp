@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "editor/edits/scene_change.h"
@@ -22,6 +23,12 @@ std::vector<std::string> named(const std::vector<Edit>& group, const Scene& befo
       if (node) names.push_back(node->name);
     }
   return names;
+}
+
+// Whether a deforming edit changes a part of its objects: see DeformTarget.
+bool is_part(const Edit& edit) {
+  const nlohmann::json fields = to_json(edit);
+  return !fields.contains("node") || fields.value("selection", false) || fields.contains("box");
 }
 
 }  // namespace
@@ -50,7 +57,7 @@ std::string title_of(const std::vector<Edit>& group, const Scene& before, const 
   if (std::string said = first.type().change_title(first.value(), change, revised); !said.empty()) return said;
   const std::string done = first.type().done(first.value());
   if (first.type().deforms) {
-    const std::string part = change.selected_before > 0 ? triangles_text(change.selected_before) + " of " : "";
+    const std::string part = is_part(first) && change.moved > 0 ? triangles_text(change.moved) + " of " : "";
     return done + " " + part + listed(change.names);
   }
   if (first.type().makes_nodes) {

@@ -103,8 +103,9 @@ std::vector<std::function<void()>> Worker::take_finished() {
   return std::exchange(finished_, {});
 }
 
-void Worker::name_steps(Snapshot& next, const Scene& before) {
+void Worker::name_steps(Snapshot& next) {
   struct StepEdits {
+    std::size_t first;  // number of its first edit
     std::vector<Edit> edits;
     std::optional<Edit> replaced;
   };
@@ -114,7 +115,7 @@ void Worker::name_steps(Snapshot& next, const Scene& before) {
   for (std::size_t k = 0; k < entries.size(); ++k) {
     // If a script has undone a part of a step, the rest counts as a separate step.
     if (k == 0 || k == history.undo_count() || !entries[k].joined) {
-      groups.emplace_back();
+      groups.push_back({k, {}, {}});
       if (entries[k].replaced > 0) groups.back().replaced = entries[k - 1].edit;
     }
     groups.back().edits.push_back(entries[k].edit);
@@ -127,18 +128,20 @@ void Worker::name_steps(Snapshot& next, const Scene& before) {
     const StepEdits& group = groups[k];
     const void* key = group.edits.front().value();
     const auto known = titles_.find(key);
-    const bool newest = k + 1 == next.steps_done;
-    const std::string title =
-        known != titles_.end() ? known->second
-        : newest               ? title_of(group.edits, before, next.scene, group.replaced ? &*group.replaced : nullptr)
-                               : title_of(group.edits, next.scene);
+    std::string title;
+    if (known != titles_.end())
+      title = known->second;
+    else if (const auto scenes = history.scenes_around(group.first, group.edits.size()))
+      title = title_of(group.edits, scenes->first, scenes->second, group.replaced ? &*group.replaced : nullptr);
+    else
+      title = title_of(group.edits, next.scene);
     titles[key] = title;
     next.steps.push_back({title, group.edits.size()});
   }
   titles_ = std::move(titles);
 }
 
-void Worker::publish(const Scene& before) {
+void Worker::publish() {
   auto next = std::make_shared<Snapshot>();
   const History& history = session_.document.history();
   next->scene = history.now();
@@ -147,7 +150,7 @@ void Worker::publish(const Scene& before) {
   next->sources = session_.document.sources();
   next->history_bytes = history.memory();
   next->journal = session_.document.journal_path();
-  name_steps(*next, before);
+  name_steps(*next);
   {
     const std::lock_guard lock(prepare_mutex_);
     // Optional: drawing computes anything missing, and reports the error.
@@ -179,7 +182,6 @@ void Worker::loop() {
     std::string failed;
     bool stopped = false;
     const std::size_t before = session_.document.history().undo_count();
-    const Scene scene_before = session_.scene();
     if (drops_renderer_.exchange(false)) session_.drop_renderer();
     try {
       next.job(session_);
@@ -195,7 +197,7 @@ void Worker::loop() {
     }
     if (!failed.empty() && session_.document.history().undo_count() != before)
       failed += " (earlier edits of this job are kept and can be undone)";
-    publish(scene_before);
+    publish();
     {
       const std::lock_guard lock(mutex_);
       if (!failed.empty()) messages_.push_back({failed, stopped ? Message::Kind::said : Message::Kind::failed});

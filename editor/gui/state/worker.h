@@ -76,9 +76,9 @@ class Worker {
  private:
   void loop();
   /// Creates a new snapshot. `before`: the scene before the job.
-  void publish(const Scene& before);
+  void publish();
   /// Fills the steps of `next`. Known steps keep their titles.
-  void name_steps(Snapshot& next, const Scene& before);
+  void name_steps(Snapshot& next);
 
   std::function<void()> wake_;
   std::mutex prepare_mutex_;

@@ -1,9 +1,12 @@
 #include "mesh_ops/deform/cage_coordinates/cage_frame.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/deform/cage_coordinates/plane_local.h"
 #include "mesh_ops/deform/cage_coordinates/wide_frame.h"
 
 namespace rebake {
@@ -87,6 +90,9 @@ CageFrame frame_of(const Cage& cage) {
   frame.scale = std::ldexp(1.0, -exponent - std::ilogb(diagonal));
   frame.diagonal = std::ldexp(diagonal, -std::ilogb(diagonal));
   if (!std::isfinite(frame.scale)) throw Error("the cage is too small");
+  const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff() * frame.scale;
+  frame.surface_tolerance =
+      std::max(plane_local::surface_tolerance<double>, 2 * std::numeric_limits<double>::epsilon() * farthest);
   std::vector<Wide3> points;
   frame.given = cage.vertices;
   for (const Vec3& v : cage.vertices) {

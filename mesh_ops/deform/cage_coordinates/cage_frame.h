@@ -37,11 +37,13 @@ struct EdgeFrame {
 /// between 1 and 2. Face frames are computed with 50 digits and then rounded, so that needles have accurate normals.
 struct CageFrame {
   Vec3 center;
-  double scale;                  ///< local = (x − center) · scale; a power of two, so the product is exact
-  double diagonal;               ///< diagonal of the cage's box, in local units
-  std::vector<Vec3> vertices;    ///< in the local frame
-  std::vector<Vec3> given;       ///< vertices in the space of the cage, unchanged
-  std::vector<FaceFrame> faces;  ///< faces with an area; faces without one are left out
+  double scale;     ///< local = (x − center) · scale; a power of two, so the product is exact
+  double diagonal;  ///< diagonal of the cage's box, in local units
+  /// How far points on the surface may lie outside by rounding, in local units: more for cages far from the origin.
+  double surface_tolerance;
+  std::vector<Vec3> vertices;               ///< in the local frame
+  std::vector<Vec3> given;                  ///< vertices in the space of the cage, unchanged
+  std::vector<FaceFrame> faces;             ///< faces with an area; faces without one are left out
   std::vector<std::uint32_t> face_numbers;  ///< number in the cage, per entry of `faces`
   std::vector<EdgeFrame> edges;             ///< edges of `faces`
 

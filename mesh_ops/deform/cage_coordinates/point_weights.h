@@ -99,10 +99,17 @@ inline void add_wide_gradients(const CageFrame& cage, const std::vector<std::siz
   for (std::size_t v = 0; v < phi.size(); ++v) add_gradient(phi[v], of_vertices[v]);
 }
 
-template <class T>
-bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_count, std::vector<T>& phi,
-                   std::vector<T>& psi) {
-  const Vec3 local = cage.to_local(point);
+/// The point of the surface that is nearest to a point, in local units.
+struct NearestPoint {
+  double distance = std::numeric_limits<double>::infinity();
+  Vec3 place;
+};
+
+/// As green_weights(), for a local point. `exact()` returns the point with 50 digits. Fills in `closest` if the point
+/// is outside.
+template <class T, class Exact>
+bool green_weights_at(const CageFrame& cage, const Vec3& local, const Exact& exact_point, std::size_t face_count,
+                      std::vector<T>& phi, std::vector<T>& psi, NearestPoint& closest) {
   phi.assign(cage.vertices.size(), plane_local::constant<T>(0));
   psi.assign(face_count, plane_local::constant<T>(0));
   const plane_local::Point<T> x = plane_local::local_point(local, T());
@@ -143,7 +150,7 @@ bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_co
   double inside = value_of(sum), winding = 0;
   bool wide = false;
   if constexpr (std::is_same_v<T, double> || std::is_same_v<T, Dual>) {
-    const WidePoint exact = near.empty() ? WidePoint() : wide_local_point(cage, point);
+    const WidePoint exact = near.empty() ? WidePoint() : exact_point();
     if (const WideGreen of_near = wide_green(cage, exact, near); !of_near.terms.empty()) {
       wide = true;
       add_wide_values(cage, near_numbers, of_near.terms, phi, psi);
@@ -158,7 +165,13 @@ bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_co
     for (std::size_t n = 0; n < near.size(); ++n) add(near_numbers[n], near_terms[n]);
     inside = winding = value_of(sum);
   }
-  if (!(inside > 0.125 || nearest <= plane_local::surface_tolerance<T>)) return false;
+  if (!(inside > 0.125 || nearest <= plane_local::surface_tolerance<T>)) {
+    const FaceFrame& face = cage.faces[nearest_face];
+    const auto lambda = nearest_coordinates(face, plane_local::seen(cage, face, x));
+    closest = {nearest, Vec3::Zero()};
+    for (std::size_t k = 0; k < 3; ++k) closest.place += value_of(lambda[k]) * cage.vertices[face.vertices[k]];
+    return false;
+  }
   winding = std::round(winding);
   if (winding > 1) {
     const T by_winding = plane_local::constant<T>(1 / winding);
@@ -176,6 +189,21 @@ bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_co
   }
   for (std::size_t k = 0; k < 3; ++k) phi[face.vertices[k]] += missing * lambda[k];
   return true;
+}
+
+template <class T>
+bool green_weights(const CageFrame& cage, const Vec3& point, std::size_t face_count, std::vector<T>& phi,
+                   std::vector<T>& psi) {
+  NearestPoint closest;
+  const Vec3 local = cage.to_local(point);
+  if (green_weights_at(
+          cage, local, [&] { return wide_local_point(cage, point); }, face_count, phi, psi, closest))
+    return true;
+  // Far from the origin, a point on the surface may lie outside by the rounding of its coordinates.
+  if (!(closest.distance <= cage.surface_tolerance)) return false;
+  const Vec3 on = closest.place;
+  const auto exact = [&] { return WidePoint{Wide(on.x()), Wide(on.y()), Wide(on.z())}; };
+  return green_weights_at(cage, on, exact, face_count, phi, psi, closest);
 }
 
 }  // namespace rebake

@@ -109,16 +109,24 @@ double winding_around(const Vec3& point, const Cage& part) {
   return angle / (4 * std::numbers::pi);
 }
 
+// The parts of a cage by their lowest vertex, each with all vertices.
+std::map<std::uint32_t, Cage> parts_of(const Cage& cage, const std::vector<std::uint32_t>& of_vertex) {
+  std::map<std::uint32_t, Cage> parts;
+  for (const Face& face : cage.faces) parts[of_vertex[face[0]]].faces.push_back(face);
+  for (auto& [first, part] : parts) part.vertices = cage.vertices;
+  return parts;
+}
+
+// A point on the other surface has a winding number of about ½.
+constexpr double clearly_inside = 0.75;
+
 // Per face, 1 if it must be flipped. Components that lie inside no other one must face outwards; components inside
 // those are flipped along with them, so a cavity stays a cavity.
 std::vector<std::uint8_t> faces_to_flip(const Cage& cage) {
   const std::vector<std::uint32_t> of_vertex = components(cage);
-  std::map<std::uint32_t, Cage> parts;
-  for (const Face& face : cage.faces) parts[of_vertex[face[0]]].faces.push_back(face);
-  for (auto& [first, part] : parts) part.vertices = cage.vertices;
-  // A point on the other surface has a winding number of about ½.
+  const std::map<std::uint32_t, Cage> parts = parts_of(cage, of_vertex);
   const auto lies_in = [&](std::uint32_t inner, const Cage& outer) {
-    return std::abs(winding_around(cage.vertices[inner], outer)) > 0.75;
+    return std::abs(winding_around(cage.vertices[inner], outer)) > clearly_inside;
   };
   std::map<std::uint32_t, std::uint32_t> outermost;
   for (const auto& [first, part] : parts) {
@@ -140,6 +148,19 @@ std::vector<std::uint8_t> faces_to_flip(const Cage& cage) {
 }
 
 }  // namespace
+
+std::size_t nested_components(const Cage& cage) {
+  const std::map<std::uint32_t, Cage> parts = parts_of(cage, components(cage));
+  std::size_t nested = 0;
+  for (const auto& [first, part] : parts) {
+    if (parts.size() == 1 || volume(part) < 0) continue;
+    double winding = 0;
+    for (const auto& [other, around] : parts)
+      if (other != first) winding += winding_around(cage.vertices[first], around);
+    nested += winding > clearly_inside ? 1 : 0;
+  }
+  return nested;
+}
 
 Cage checked_cage(Cage cage) {
   if (cage.faces.size() < 4) throw Error("the cage has fewer than four triangles: it cannot be closed");

@@ -34,6 +34,10 @@ double volume(const Cage& cage);
 /// Connected components: per vertex, the lowest vertex of its component.
 std::vector<std::uint32_t> components(const Cage& cage);
 
+/// Number of components that lie inside another one and face the same way. Between both, weights of mean value
+/// coordinates may be arbitrarily large.
+std::size_t nested_components(const Cage& cage);
+
 /// Number of pairs of faces that intersect.
 std::size_t self_intersections(const Cage& cage);
 

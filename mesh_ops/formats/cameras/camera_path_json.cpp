@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/json_file.h"
 
 namespace rebake {
@@ -113,7 +114,8 @@ std::optional<double> nerfstudio_path_rate(const std::filesystem::path& file) {
 
 std::string nerfstudio_path_text(const std::vector<PhotoCamera>& cameras) {
   constexpr double frames_per_second = 24;
-  json file = {{"camera_type", "perspective"},
+  json file = {{"software", camera_software},
+               {"camera_type", "perspective"},
                {"render_height", cameras.empty() ? 0 : cameras.front().height},
                {"render_width", cameras.empty() ? 0 : cameras.front().width},
                {"fps", frames_per_second},

@@ -72,7 +72,15 @@ std::vector<fs::path> capture_files(const fs::path& camera_file, const std::vect
   return files;
 }
 
-std::vector<fs::path> captured_files_at(const fs::path& folder) {
+std::vector<fs::path> named_photographs(const fs::path& camera_file, const std::vector<PhotoCamera>& cameras) {
+  std::vector<fs::path> files;
+  for (const PhotoCamera& camera : cameras)
+    if (fs::path file = photograph_at(capture_folder(camera_file), camera.name); !file.empty())
+      files.push_back(std::move(file));
+  return files;
+}
+
+std::vector<fs::path> captured_files_at(const fs::path& folder, FilesOfCapture files_of) {
   std::error_code error;
   const fs::path whole = fs::weakly_canonical(folder, error);
   std::vector<fs::path> cameras{whole, whole.parent_path(), whole.parent_path().parent_path()}, files;
@@ -84,7 +92,7 @@ std::vector<fs::path> captured_files_at(const fs::path& folder) {
     if (!fs::exists(place, error) || camera_format_at(place) == nullptr) continue;
     try {
       std::vector<std::string> notes;
-      for (fs::path& file : capture_files(place, read_cameras(place, "", {}, notes))) files.push_back(std::move(file));
+      for (fs::path& file : files_of(place, read_cameras(place, "", {}, notes))) files.push_back(std::move(file));
     } catch (const Error&) {
       // Unreadable cameras tell nothing about photographs.
     }

@@ -20,7 +20,15 @@ std::filesystem::path capture_folder(const std::filesystem::path& camera_file);
 std::vector<std::filesystem::path> capture_files(const std::filesystem::path& camera_file,
                                                  const std::vector<PhotoCamera>& cameras);
 
-/// The photographs and masks of captures whose camera files lie in a folder, or in the two folders around it.
-std::vector<std::filesystem::path> captured_files_at(const std::filesystem::path& folder);
+/// The photographs of a capture that exist where its cameras name them.
+std::vector<std::filesystem::path> named_photographs(const std::filesystem::path& camera_file,
+                                                     const std::vector<PhotoCamera>& cameras);
+
+/// Returns files of a capture.
+using FilesOfCapture = std::vector<std::filesystem::path> (*)(const std::filesystem::path& camera_file,
+                                                              const std::vector<PhotoCamera>& cameras);
+/// The files of captures whose camera files lie in a folder, or in the two folders around it.
+std::vector<std::filesystem::path> captured_files_at(const std::filesystem::path& folder,
+                                                     FilesOfCapture files_of = capture_files);
 
 }  // namespace rebake

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/json_file.h"
 #include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/formats/images/picture_codecs.h"
@@ -188,7 +189,7 @@ std::vector<PhotoCamera> read_transforms(const fs::path& file, std::vector<std::
 }
 
 std::string transforms_text(const std::vector<PhotoCamera>& cameras) {
-  json file = json::object();
+  json file = {{"software", camera_software}};
   const bool common = std::all_of(cameras.begin(), cameras.end(),
                                   [&](const PhotoCamera& one) { return same_intrinsics(one, cameras.front()); });
   if (common && !cameras.empty()) write_intrinsics(cameras.front(), file);

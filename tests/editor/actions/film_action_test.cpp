@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 #include "render/image.h"
 #include "tests/support/made_scenes.h"
@@ -82,6 +83,42 @@ TEST_F(FilmActionTest, NeverReplacesOtherFiles) {
   write_text(at("a.mp4"), "a file of mine");
   expect_error(film(R"("out": "{here}/a.mp4")"), "is not a video of Rebake");
   expect_error(film(R"("out": "{here}/ball/x.mp4")"), "ball");
+}
+
+TEST_F(FilmActionTest, DistinguishesFormatsAndObjectsThatOnlyCastShadows) {
+  run(film(R"("out": "{here}/film")"));
+  expect_error(film(R"("out": "{here}/film", "picture": "jpg")"), "holds pictures of another film");
+  run(R"({"op": "import", "path": "{here}/ball", "as": "other"}
+{"op": "light", "effects": ["self", "cast"], "source": "sky", "rays": 16}
+)" + film(R"("out": "{here}/part", "nodes": ["ball"])"));
+  const auto before = folder_bytes(at("part"));
+  run(R"({"op": "transform", "node": "other", "translate": [0, 3, 0]})");
+  expect_error(film(R"("out": "{here}/part", "nodes": ["ball"])"), "holds pictures of another film");
+  EXPECT_EQ(folder_bytes(at("part")), before);
+}
+
+TEST_F(FilmActionTest, LeavesFoldersOfRunningFilmsAndForeignPartsAlone) {
+  run(film(R"("out": "{here}/film")"));
+  write_text(at("film/00003.png.1234abcd.partial"), "half of a picture");
+  {
+    const FolderLock other(at("film"));
+    expect_error(film(R"("out": "{here}/film")"), "in use: another run writes its film there");
+    EXPECT_TRUE(fs::exists(at("film/00003.png.1234abcd.partial")));
+  }
+  fs::create_directories(at("mine"));
+  write_text(at("mine/film.json.mine.partial"), "my notes");
+  expect_error(film(R"("out": "{here}/mine")"), "is not a film's folder");
+  EXPECT_EQ(read_file(at("mine/film.json.mine.partial")), "my notes");
+}
+
+TEST_F(FilmActionTest, ProtectsItsCameraFile) {
+  run(R"({"op": "view", "name": "x", "camera": {"eye": [0, 3, 4], "target": [0, 0, 0]}}
+{"op": "view", "name": "y", "camera": {"eye": [0, -3, 4], "target": [0, 0, 0]}}
+{"op": "export_views", "out": "{here}/cams.json", "format": "nerfstudio_path"}
+)" + film(R"("out": "{here}/film", "path": "{here}/cams.json")"));
+  const std::string cameras = read_file(at("cams.json"));
+  expect_error(R"({"op": "export_views", "out": "{here}/cams.json"})", "is a camera file of this run");
+  EXPECT_EQ(read_file(at("cams.json")), cameras);
 }
 
 TEST_F(FilmActionTest, KeepsThePicturesIfTheEncoderFails) {

@@ -128,6 +128,101 @@ TEST_F(Guards, ProjectsAreNotReplacedByOtherOutputsNorBySmallerProjects) {
   EXPECT_NE(log().find("newer version"), std::string::npos) << log();
 }
 
+TEST_F(Guards, ScenesBeforeTheEditsOfAPageAreProtected) {
+  const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";
+  fs::copy(kettle, path("source"));
+  ASSERT_EQ(program("export " + kettle + " -o {}/scene --format rebake"), 0) << log();
+  write("make.jsonl",
+        fmt::format("{{\"op\": \"import\", \"path\": \"{0}/source\"}}\n{{\"op\": \"save_project\", \"out\": "
+                    "\"{0}/before.rebake\"}}\n",
+                    path("").parent_path().string()));
+  ASSERT_EQ(program("run {}/make.jsonl"), 0) << log();
+  const std::string publish = R"({"op": "publish", "out": "FOLDER/page", "before": "FOLDER/BEFORE"})"
+                              "\n";
+  for (const auto& [before, line] : std::vector<std::pair<std::string, std::string>>{
+           {"scene", R"({"op": "save", "out": "FOLDER/scene"})"},
+           {"before.rebake", R"({"op": "save_project", "out": "FOLDER/before.rebake"})"},
+           {"before.rebake", R"({"op": "export", "out": "FOLDER/source"})"}}) {
+    std::string script = import_line() + publish + line + "\n";
+    for (const auto& [word, text] :
+         {std::pair<std::string, std::string>{"BEFORE", before}, {"FOLDER", path("").parent_path().string()}})
+      for (std::size_t at = 0; (at = script.find(word, at)) != std::string::npos;)
+        script.replace(at, word.size(), text);
+    write("s.jsonl", script);
+    const auto scene = folder_bytes(path("scene")), source = folder_bytes(path("source"));
+    const std::string project = read_file(path("before.rebake"));
+    EXPECT_EQ(program("run {}/s.jsonl"), 1) << line;
+    EXPECT_NE(log().find("scene before the edits"), std::string::npos) << log();
+    EXPECT_EQ(folder_bytes(path("scene")), scene);
+    EXPECT_EQ(folder_bytes(path("source")), source);
+    EXPECT_EQ(read_file(path("before.rebake")), project);
+  }
+}
+
+TEST_F(Guards, CameraFilesOfOthersAreKept) {
+  write("sprites.json", R"({"frames": {"hero.png": {"x": 1}}, "meta": {"app": "Packer"}})");
+  write("poses.json",
+        R"({"camera_angle_x": 0.7, "frames": [{"file_path": "/data/0.jpg",
+            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
+  const std::string views = import_line() +
+                            R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}})"
+                            "\n"
+                            R"({"op": "view", "name": "w", "camera": {"eye": [0, 0, 6], "target": [0, 0, 0]}})"
+                            "\n";
+  const auto export_to = [&](const std::string& name, const std::string& more) {
+    write("s.jsonl",
+          views + more + fmt::format("{{\"op\": \"export_views\", \"out\": \"{}\"}}\n", path(name).string()));
+    return program("run {}/s.jsonl");
+  };
+  for (const char* name : {"sprites.json", "poses.json"}) {
+    const std::string before = read_file(path(name));
+    EXPECT_EQ(export_to(name, ""), 1) << name;
+    EXPECT_EQ(read_file(path(name)), before);
+  }
+  // Own files are replaced, also after a view got another name.
+  EXPECT_EQ(export_to("own.json", ""), 0) << log();
+  EXPECT_EQ(export_to("own.json", R"({"op": "view", "name": "x", "camera": {"eye": [0, 1, 6], "target": [0, 0, 0]}})"
+                                  "\n"),
+            0)
+      << log();
+}
+
+TEST_F(Guards, RenderedPhotographsAreNotReplacedButOwnPicturesAre) {
+  fs::create_directories(path("cap/images"));
+  fs::create_directories(path("edited"));
+  const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";
+  ASSERT_EQ(program("render " + kettle + " -o {}/cap/images/0.png --size 16x16"), 0) << log();
+  write("cap/transforms.json",
+        R"({"camera_angle_x": 0.7, "w": 16, "h": 16, "frames": [{"file_path": "images/0.png",
+            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
+  const std::string photograph = read_file(path("cap/images/0.png"));
+  const std::string render = "render " + kettle + " --cameras {}/cap/transforms.json -o {}/";
+  EXPECT_EQ(program(render + "cap/images"), 1);
+  EXPECT_EQ(read_file(path("cap/images/0.png")), photograph);
+  for (int run = 0; run < 2; ++run) EXPECT_EQ(program(render + "cap/renders"), 0) << log();
+  write("edited/0.png", "\x89PNG of somebody else");
+  EXPECT_EQ(program(render + "edited"), 1);
+  EXPECT_NE(log().find("was not rendered by Rebake"), std::string::npos) << log();
+  EXPECT_EQ(read_file(path("edited/0.png")), "\x89PNG of somebody else");
+}
+
+TEST_F(Guards, ScriptsThatSaveOneProjectSeveralTimesRunAgain) {
+  const std::string save = fmt::format("{{\"op\": \"save_project\", \"out\": \"{}\"}}\n", path("p.rebake").string());
+  const std::string red = R"({"op": "background", "color": [1, 0, 0]})"
+                          "\n";
+  write("s.jsonl", import_line() + save + red + save + save);
+  EXPECT_EQ(program("run {}/s.jsonl"), 0) << log();
+  EXPECT_EQ(log().find("a later line"), std::string::npos) << log();
+  const std::string project = read_file(path("p.rebake"));
+  EXPECT_EQ(program("run {}/s.jsonl"), 0) << log();
+  EXPECT_NE(log().find("has more edits already; a later line"), std::string::npos) << log();
+  EXPECT_EQ(read_file(path("p.rebake")), project);
+  // A script that fails between its saves leaves the project of the run before.
+  write("s.jsonl", import_line() + save + "{}\n" + save);
+  EXPECT_EQ(program("run {}/s.jsonl"), 1);
+  EXPECT_EQ(read_file(path("p.rebake")), project);
+}
+
 TEST_F(Guards, FilesBesideMeshesAreProtected) {
   fs::create_directories(path("obj"));
   write("obj/m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");

@@ -310,6 +310,27 @@ TEST_F(Batch, ResumeChecksInputsAndOutputs) {
   EXPECT_EQ(run()["a"], Status::done);
 }
 
+TEST_F(Batch, ResumeChecksPagesFilmsAndWhatTheyRead) {
+  options.scenes = {(folder_.path() / "scenes/a").string()};
+  export_scene(scene_of(made_object({.columns = 8, .rows = 4, .seed = 9})), folder_.path() / "before", {});
+  write_text(
+      options.script,
+      R"({"op": "publish", "out": "{to}/page", "before": "{to}/before"})"
+      "\n"
+      R"({"op": "film", "out": "{to}/film", "path": "turntable", "width": 8, "height": 8, "fps": 2, "seconds": 1})");
+  options.variables = {"to=" + folder_.path().string()};
+  options.resume = true;
+  EXPECT_EQ(run()["a"], Status::done) << messages["a"];
+  EXPECT_EQ(run()["a"], Status::skipped);
+  std::ofstream(folder_.path() / "before/mlp.json", std::ios::app) << " ";
+  EXPECT_EQ(run()["a"], Status::done) << "the scene before the edits has changed";
+  fs::remove_all(folder_.path() / "page");
+  fs::remove_all(folder_.path() / "film");
+  EXPECT_EQ(run()["a"], Status::done) << "results are gone";
+  fs::remove(folder_.path() / "film/00000.png");
+  EXPECT_EQ(run()["a"], Status::failed) << "a picture is gone";
+}
+
 TEST_F(Batch, ShardsDetectACommonOutputFolder) {
   write_text(options.script, R"({"op": "export", "out": "{to}/same"})");
   options.variables = {"to=" + folder_.path().string()};

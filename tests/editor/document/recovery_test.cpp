@@ -70,6 +70,34 @@ TEST_F(Recovery, RecoversEverythingBeforeAFlippedBit) {
   }
 }
 
+// A tail of zeros may have been any number of lines, which were on the disk before.
+TEST_F(Recovery, ZerosAtTheEndAreDamageAndReadingChangesNothing) {
+  const std::string bytes = journal(6);
+  const std::size_t third = bytes.find('\n', bytes.find('\n', bytes.find('\n') + 1) + 1) + 11;
+  const std::string zeroed = bytes.substr(0, third) + std::string(bytes.size() - third, '\0');
+  write(path("zeroed"), zeroed);
+  const Document::Recovered damaged = Document::recover(path("zeroed"));
+  EXPECT_FALSE(damaged.lost.empty());
+  EXPECT_FALSE(damaged.document.keeps_journal());
+  EXPECT_EQ(read_file(path("zeroed")), zeroed);
+  // A torn line is removed only when another edit follows.
+  const std::string torn = bytes.substr(0, third);
+  write(path("torn"), torn);
+  write(path("empty"), "");
+  {
+    Document::Recovered read = Document::recover(path("torn"));
+    EXPECT_TRUE(read.torn);
+    EXPECT_EQ(read_file(path("torn")), torn);
+    Document::recover(path("empty"));
+    EXPECT_EQ(read_file(path("empty")), "");
+    read.document.edit(Background{});
+  }
+  const Document::Recovered again = Document::recover(path("torn"));
+  EXPECT_FALSE(again.torn);
+  EXPECT_TRUE(again.lost.empty());
+  EXPECT_EQ(again.edits, 3U);
+}
+
 TEST_F(Recovery, DoesNotAppendToOlderJournals) {
   const auto line = [](const std::string& text) { return hash_text(content_hash(text)) + " " + text + "\n"; };
   write(path("old"),

@@ -309,6 +309,33 @@ TEST(SourceGuard, ComparesDevicesAndInodes) {
   EXPECT_NO_THROW(guard.check_folder(folder.path() / "elsewhere"));
 }
 
+// Simulates a file system that gives the inode of a removed file to the next one.
+class ReusedInodes : public FileCalls {
+ public:
+  std::int64_t born = 1;
+  int stat(const char* path, struct stat* about) override {
+    const int result = FileCalls::stat(path, about);
+    if (fs::path(path).extension() == ".png") about->st_ino = 77;
+    return result;
+  }
+  std::int64_t birth_time(const char*) override { return born; }
+};
+
+TEST(SourceGuard, ForgetsInodesOfRemovedFiles) {
+  const TemporaryFolder folder;
+  ReusedInodes calls;
+  const ReplacedFileCalls in_use(calls);
+  write_text(folder.path() / "read.png", "1");
+  SourceGuard guard;
+  guard.add_file(folder.path() / "read.png");
+  fs::rename(folder.path() / "read.png", folder.path() / "moved.png");
+  EXPECT_THROW(guard.check_file(folder.path() / "moved.png"), FileError) << "undo and journals read it again";
+  fs::remove(folder.path() / "moved.png");
+  calls.born = 2;
+  write_text(folder.path() / "new.png", "2");
+  EXPECT_NO_THROW(guard.check_file(folder.path() / "new.png"));
+}
+
 TEST(SourceGuard, FollowsLinksToFoldersOfLinks) {
   const TemporaryFolder folder;
   for (const char* name : {"a", "links", "scene"}) fs::create_directories(folder.path() / name);

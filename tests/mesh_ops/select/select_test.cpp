@@ -432,6 +432,18 @@ TEST(Select, OnlyTheEarlierOfEqualTrianglesIsADuplicate) {
   EXPECT_EQ(duplicate_triangles(object), (TriangleSet{0, 1, 0, 0, 0}));
 }
 
+TEST(Select, DuplicatesMayBeInSetsWithEqualTexels) {
+  BakedObject object = strip(2, 0, everywhere);
+  const TextureSet& set = object.sets[0];
+  const auto copy = [&](int change) {
+    FeatureTexture::Change texels(*set.texels);
+    texels.at(0, 0).feat1[0] = static_cast<std::uint8_t>(texels.at(0, 0).feat1[0] + change);
+    return TextureSet{set.soup, texels.finish()};
+  };
+  object.sets = {set, copy(0), copy(1)};
+  EXPECT_EQ(duplicate_triangles(object), (TriangleSet{1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0}));
+}
+
 TEST(Select, NineMicsHaveAtLeastNineComponents) {
   const auto mic = mic_object();
   if (!mic) GTEST_SKIP() << "REBAKE_TEST_DATA has no mic";

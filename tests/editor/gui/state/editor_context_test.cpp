@@ -1,8 +1,10 @@
 // The window's state without a display: edits, previews and costs.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
 
@@ -11,6 +13,7 @@
 #include "editor/edits/nodes/rename.h"
 #include "editor/edits/nodes/transform.h"
 #include "editor/edits/select/select.h"
+#include "editor/edits/select/select_triangles.h"
 #include "editor/edits/support.h"
 #include "editor/gui/state/editor_context.h"
 #include "mesh_ops/formats/export.h"
@@ -179,6 +182,39 @@ TEST_F(EditorContextTest, ReleaseWaitingForAPreviewCanBeCancelled) {
   EXPECT_EQ(editor->now->steps_done, steps);
   EXPECT_TRUE(find(editor->scene(), id("box"))->visible);
   EXPECT_FALSE(editor->preview) << "a cancelled edit must not be shown";
+}
+
+// A job may make several steps, such as a script, or open another document.
+TEST_F(EditorContextTest, EveryStepOfAJobCountsItsOwnTriangles) {
+  editor->jobs.worker.start("script", [](Session& session) {
+    const auto step = [&](int last) {
+      const std::string select =
+          fmt::format(R"({{"op": "select_triangles", "node": "box", "triangles": [[0, {}]]}})", last);
+      session.edit(read_edit(nlohmann::json::parse(select), session.scene()));
+      session.edit(read_edit({{"op", "delete"}}, session.scene()));
+    };
+    step(9);
+    step(4);
+  });
+  wait();
+  ASSERT_EQ(editor->now->steps.size(), 6U);
+  EXPECT_EQ(editor->now->steps[3].title, "Deleted 10 triangles of box");
+  EXPECT_EQ(editor->now->steps[5].title, "Deleted 5 triangles of box");
+}
+
+TEST_F(EditorContextTest, AdjustedSelectionsCountFromBeforeTheStep) {
+  SelectTriangles some;
+  some.node = {id("box")};
+  some.triangles.ranges = {{0, 3}};
+  editor->edit(some);
+  wait();
+  some.triangles.ranges = {{0, 9}};
+  editor->adjust({some});
+  wait();
+  some.triangles.ranges = {{0, 7}};
+  editor->adjust({some});
+  wait();
+  EXPECT_EQ(editor->now->steps.back().title, "Selected 8 triangles in box");
 }
 
 TEST_F(EditorContextTest, TitlesAreImmutable) {

@@ -30,6 +30,16 @@ TEST_F(Titles, NameNodesWithSelectedTriangles) {
   EXPECT_EQ(title_after(R"({"op": "delete"})"), "Deleted 256 triangles of b");
 }
 
+TEST_F(Titles, CountTrianglesThatDeformationsMoved) {
+  act(document_, R"({"op": "select", "node": "b", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"})");
+  EXPECT_EQ(title_after(R"({"op": "bend", "node": "b", "degrees": 20})"), "Bent by 20°: b");
+  const std::string part = title_after(R"({"op": "bend", "node": "b", "degrees": 20, "selection": true,
+      "box": {"min": [0, 0, 0], "max": [0.5, 1, 1]}, "frame": "bounds"})");
+  const std::size_t selected = count(*find(document_.scene(), "b")->selection);
+  ASSERT_TRUE(part.starts_with("Bent by 20°: ") && part.ends_with(" triangles of b")) << part;
+  EXPECT_LT(std::stoul(part.substr(std::string("Bent by 20°: ").size())), selected) << part;
+}
+
 TEST_F(Titles, CountWhatAnEditChanged) {
   act(document_, R"({"op": "select", "node": "b", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"})");
   const std::string part = std::to_string(count(*find(document_.scene(), "b")->selection)) + " triangles";

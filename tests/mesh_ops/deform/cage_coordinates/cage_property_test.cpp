@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <random>
 #include <tuple>
@@ -282,17 +283,29 @@ TEST(CageProperty, OrientsEveryComponentOutwards) {
     }
 }
 
-// At 2.2e-16 outside a wall, the face and the cage must agree whether the point is inside.
-TEST(CageProperty, GreenRotationOneRoundingOutsideALattice) {
-  const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 1, 1)), 6, 6, 6);
+// One rounding outside a wall, the face and the cage must agree whether the point is inside. Far from the origin,
+// roundings are larger.
+TEST(CageProperty, GreenOneRoundingOutsideALattice) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> any(0, 1);
-  std::vector<Vec3> points;
-  for (int n = 0; n < 96; ++n) points.emplace_back(any(random), -2.2e-16, any(random));
-  const std::vector<Weighed> all = weighed(*green_coordinates(cage), points);
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    ASSERT_FALSE(all[n].outside);
-    EXPECT_LE(linear_errors(cage, all[n], points[n]).jacobian, 1e-8);
+  for (const double place : {0.0, 1e3, -1e5, 1e7, -1e9, 1e12}) {
+    const Cage cage = lattice_cage(Box(Vec3(place, place, place), Vec3(place + 1, place + 1, place + 1)), 6, 6, 6);
+    std::vector<Vec3> points;
+    for (int n = 0; n < 32; ++n) {
+      for (int axis = 0; axis < 3; ++axis) {
+        Vec3 point(place + any(random), place + any(random), place + any(random));
+        const double outside = place == 0 ? -2.2e-16 : std::nextafter(place, -std::numeric_limits<double>::infinity());
+        point[axis] = n % 2 == 0 ? outside : std::nextafter(place + 1, std::numeric_limits<double>::infinity());
+        points.push_back(point);
+      }
+    }
+    const std::vector<Weighed> all = weighed(*green_coordinates(cage), points);
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      ASSERT_FALSE(all[n].outside) << "point " << n << " of the cage at " << place;
+      const LinearErrors errors = linear_errors(cage, all[n], points[n]);
+      EXPECT_LE(errors.position, std::max(1e-14, frame_of(cage).surface_tolerance)) << place;
+      EXPECT_LE(errors.jacobian, 1e-8 + 16 * frame_of(cage).surface_tolerance) << place;
+    }
   }
 }
 
