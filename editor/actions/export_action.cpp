@@ -121,6 +121,7 @@ void report_losses(Session& session, const Scene& scene, const ExportAction& act
 
 void export_plain(Session& session, const Scene& scene, const ExportAction& action) {
   if (!action.view.empty()) throw FieldError("view", "applies to glTF only");
+  if (!action.compress.empty()) throw FieldError("compress", "applies to glTF only");
   if (action.format.name != FormatName().name) throw FieldError("plain", "is available for the MobileNeRF format only");
   const FuseOptions options = fuse_options(scene, action);
   // Reports unwritable outputs before the long computation.
@@ -222,9 +223,12 @@ ExportReport write_export(Session& session, const ExportAction& action) {
       throw FieldError("view", "applies to glTF, whose colours do not depend on the view; leave it out");
     eye = stored_view(session.scene(), action.view).eye;
   }
+  const GltfCompression compression = gltf_compression(action.compress);
+  if (compression.any() && !action.format.name.starts_with("gltf"))
+    throw FieldError("compress", "applies to glTF only; leave it out");
   ExportReport report =
       format.write(with_only(session.scene(), action.nodes), action.out,
-                   {action.layout, session.document.sources(), action.page_size, eye}, session.progress);
+                   {action.layout, session.document.sources(), action.page_size, eye, compression}, session.progress);
   session.wrote_scene(action.out, true);
   return report;
 }
@@ -284,6 +288,8 @@ REBAKE_DESCRIBE_ACTION(
             "plain: side of the pictures for measuring, in pixels, 16 to 4096");
       visit("view", action.view, Need::optional,
             "gltf: colours as seen from this stored view; default: means over the directions that see them");
+      visit("compress", action.compress, Need::optional,
+            "gltf: quantized (16 bits), meshopt and webp, for readers that know these extensions; default: none");
       visit("nodes", action.nodes, Need::optional, "only these nodes and their children; default: all");
     })
 

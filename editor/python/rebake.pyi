@@ -106,7 +106,7 @@ class Document:
         """The texels by tile row and column, 256 × 256 × 8 per tile (feat0 RGBA, feat1 RGBA); read-only, unpacked by each call."""
     def texture(self, node: Node, texture_set: int = 0) -> NDArray[np.uint8]:
         """All texels as one array, height × width × 8; a copy."""
-    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None, format: Literal["mobilenerf", "rebake", "nerf2mesh", "gltf", "gltf_features"] = "mobilenerf", plain: bool = False, width: int | Literal["auto"] | None = None, way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto", psnr: float | None = None, seconds: float = 0.0, report: str | PathLike[str] = "", page_size: int | None = None, picture_size: int = 800, view: str = "", nodes: Sequence[Node] | None = None) -> list[str]:
+    def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None, format: Literal["mobilenerf", "rebake", "nerf2mesh", "gltf", "gltf_features"] = "mobilenerf", plain: bool = False, width: int | Literal["auto"] | None = None, way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto", psnr: float | None = None, seconds: float = 0.0, report: str | PathLike[str] = "", page_size: int | None = None, picture_size: int = 800, view: str = "", compress: Sequence[str] | None = None, nodes: Sequence[Node] | None = None) -> list[str]:
         """Exports the scene; returns notes about conversions and losses, and with plain the measured errors.
 
         path: folder to write
@@ -122,6 +122,7 @@ class Document:
         page_size: maximum side of repacked textures in texels, 1 to 16384; larger textures are repacked too. Default: 4096, or that of the largest source texture
         picture_size: plain: side of the pictures for measuring, in pixels, 16 to 4096
         view: gltf: colours as seen from this stored view; default: means over the directions that see them
+        compress: gltf: quantized (16 bits), meshopt and webp, for readers that know these extensions; default: none
         nodes: only these nodes and their children; default: all
         """
     def publish(self, path: str | PathLike[str], title: str = "", view: str = "", camera: Camera | None = None, views: Sequence[str] | None = None, single_file: bool = False, before: str = "", poster: bool = False, transparent: bool = False) -> list[str]:

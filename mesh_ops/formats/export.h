@@ -7,6 +7,7 @@
 
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/base/source_guard.h"
+#include "mesh_ops/formats/gltf_compression.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
@@ -19,6 +20,7 @@ struct ExportOptions {
   std::optional<int> page_side = std::nullopt;
   /// For formats without view dependence: colours as seen from this point in world space; empty: means over directions.
   std::optional<Vec3> colors_from = std::nullopt;
+  GltfCompression compression{};  ///< of glTF files
 };
 
 /// Result of writing a scene.

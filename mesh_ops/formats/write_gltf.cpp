@@ -11,7 +11,9 @@
 #include "mesh_ops/features/atlas/atlas.h"
 #include "mesh_ops/features/distill/mean_colors.h"
 #include "mesh_ops/formats/gltf_features.h"
+#include "mesh_ops/formats/images/picture_codecs.h"
 #include "mesh_ops/formats/images/png_writer.h"
+#include "mesh_ops/formats/meshes/meshopt_codec.h"
 #include "mesh_ops/formats/mobilenerf/feature_png.h"
 #include "mesh_ops/formats/mobilenerf/rotations_file.h"
 #include "mesh_ops/formats/motion_samples.h"
@@ -32,8 +34,8 @@ constexpr int largest_texture = 8192;    // side that current devices support
 constexpr int png_level = 6;
 
 // Constants of the format.
-constexpr int float_type = 5126, unsigned_int_type = 5125, vertex_target = 34962, index_target = 34963, nearest = 9728,
-              clamp_to_edge = 33071;
+constexpr int float_type = 5126, unsigned_int_type = 5125, short_type = 5122, unsigned_short_type = 5123,
+              vertex_target = 34962, index_target = 34963, nearest = 9728, clamp_to_edge = 33071;
 
 template <class Matrix>
 json column_major(const Matrix& m) {
@@ -47,8 +49,8 @@ json column_major(const Matrix& m) {
 class GltfWriter {
  public:
   // `features`: also carries everything in an extension (gltf_features.h).
-  GltfWriter(const Scene& scene, bool features, const std::optional<Vec3>& eye, const Progress& progress)
-      : progress_(progress), features_(features), eye_(eye) {
+  GltfWriter(const Scene& scene, bool features, const ExportOptions& options, const Progress& progress)
+      : progress_(progress), features_(features), eye_(options.colors_from), compression_(options.compression) {
     for (const PlacedNode& placed : placed_nodes(scene))
       if (placed.visible && placed.node->object) visible_.push_back(placed);
     if (visible_.empty()) throw EditError("there is nothing to export: no visible node has triangles");
@@ -75,12 +77,23 @@ class GltfWriter {
     root_["scene"] = 0;
     root_["asset"] = {{"version", "2.0"}, {"generator", generator}};
     root_["extensionsUsed"] = {"KHR_materials_unlit"};
+    for (const auto& [used, name] : {std::pair(compression_.quantized, "KHR_mesh_quantization"),
+                                     {compression_.meshopt, meshopt_extension},
+                                     {compression_.webp, "EXT_texture_webp"}})
+      if (used) {
+        root_["extensionsUsed"].push_back(name);
+        root_["extensionsRequired"].push_back(name);
+      }
     if (features_) add_features(scene);
     root_["samplers"] = json::array(
         {{{"magFilter", nearest}, {"minFilter", nearest}, {"wrapS", clamp_to_edge}, {"wrapT", clamp_to_edge}}});
     if (!channels_.empty())
       root_["animations"] = json::array({{{"name", "keyframes"}, {"channels", channels_}, {"samplers", samplers_}}});
     root_["buffers"] = json::array({{{"byteLength", bytes_.size()}}});
+    // Stands for the decompressed bytes.
+    if (compression_.meshopt)
+      root_["buffers"].push_back(
+          {{"byteLength", decompressed_}, {"extensions", {{meshopt_extension, {{"fallback", true}}}}}});
   }
 
   // The bytes of a .glb file.
@@ -114,6 +127,36 @@ class GltfWriter {
     if (target != 0) view["target"] = target;
     bytes_.append(static_cast<const char*>(data), size);
     return add_to("bufferViews", view);
+  }
+
+  // Vertex data of `stride` bytes per vertex, or indices of triangles (stride 0), compressed if asked for.
+  std::size_t add_geometry(const void* data, std::size_t count, std::size_t stride) {
+    const std::size_t element = stride > 0 ? stride : sizeof(std::uint32_t);
+    const std::string_view bytes(static_cast<const char*>(data), count * element);
+    const int target = stride > 0 ? vertex_target : index_target;
+    std::size_t view = 0;
+    if (!compression_.meshopt) {
+      view = add_view(data, bytes.size(), target);
+    } else {
+      const std::string packed = stride > 0 ? meshopt_attributes(bytes, count, stride) : meshopt_triangles(bytes);
+      view = add_view(packed.data(), packed.size(), target);
+      json& made = root_["bufferViews"][view];
+      const json compressed = {{"buffer", 0},
+                               {"byteOffset", made.at("byteOffset")},
+                               {"byteLength", packed.size()},
+                               {"byteStride", element},
+                               {"count", count},
+                               {"mode", stride > 0 ? "ATTRIBUTES" : "TRIANGLES"}};
+      decompressed_ = (decompressed_ + 3) / 4 * 4;
+      made = {{"buffer", 1},
+              {"byteOffset", decompressed_},
+              {"byteLength", bytes.size()},
+              {"target", target},
+              {"extensions", {{meshopt_extension, compressed}}}};
+      decompressed_ += bytes.size();
+    }
+    if (stride > 0) root_["bufferViews"][view]["byteStride"] = stride;
+    return view;
   }
 
   std::size_t add_node(const Node& node) {
@@ -198,13 +241,15 @@ class GltfWriter {
       const MeanColors colors = mean_colors(set, *placed, *rays_, size_, directions, loss, eye_);
       const Vec3 centre = set.soup.bounds().center();
       const std::size_t material = add_material(node.name, colors);
-      const std::size_t mesh =
-          add_to("meshes", {{"name", node.name}, {"primitives", json::array({primitive(set, centre, material)})}});
+      double scale = 1;
+      const std::size_t mesh = add_to(
+          "meshes", {{"name", node.name}, {"primitives", json::array({primitive(set, centre, material, scale)})}});
       if (features_) add_set(*node.object, s, mesh);
       json part = {{"name", node.name + " triangles"}, {"mesh", mesh}};
       if (!centre.isZero(0)) part["translation"] = {centre.x(), centre.y(), centre.z()};
+      if (scale != 1) part["scale"] = {scale, scale, scale};
       nodes.push_back(add_to("nodes", part));
-      if (bends) add_poses(nodes.back(), mesh, set, s, poses, bends->seconds);
+      if (bends) add_poses(nodes.back(), mesh, set, s, scale, poses, bends->seconds);
     }
     if (bends)
       notes_.push_back(
@@ -277,7 +322,8 @@ class GltfWriter {
   }
 
   // Morph targets of a mesh, of which one after the other gets the weight 1.
-  void add_poses(std::size_t node, std::size_t mesh, const TextureSet& rest, std::size_t number,
+  // `scale`: of the node, see primitive().
+  void add_poses(std::size_t node, std::size_t mesh, const TextureSet& rest, std::size_t number, double scale,
                  const std::vector<std::vector<TextureSet>>& poses, const std::vector<double>& seconds) {
     json targets = json::array();
     std::vector<float> weights;
@@ -288,7 +334,7 @@ class GltfWriter {
       std::vector<float> moves;
       Eigen::AlignedBox3f box;
       for (std::size_t v = 0; v < soup.positions().size(); ++v) {
-        const Eigen::Vector3f move = (soup.positions()[v] - rest.soup.positions()[v]).cast<float>();
+        const Eigen::Vector3f move = ((soup.positions()[v] - rest.soup.positions()[v]) / scale).cast<float>();
         box.extend(move);
         moves.insert(moves.end(), {move.x(), move.y(), move.z()});
       }
@@ -319,44 +365,87 @@ class GltfWriter {
     return side;
   }
 
-  std::size_t add_material(const std::string& name, const MeanColors& colors) {
-    const std::string png = encode_png(colors.width, colors.height, 4, colors.rgba, png_level);
-    const std::size_t view = add_view(png.data(), png.size(), 0);
-    const std::size_t image = add_to("images", {{"bufferView", view}, {"mimeType", "image/png"}, {"name", name}});
-    const std::size_t texture = add_to("textures", {{"sampler", 0}, {"source", image}});
-    return add_to("materials",
-                  {{"name", name},
-                   {"pbrMetallicRoughness",
-                    {{"baseColorTexture", {{"index", texture}}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}},
-                   {"alphaMode", "MASK"},
-                   {"alphaCutoff", 0.5},
-                   {"doubleSided", true},
-                   {"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  std::size_t add_color_texture(const std::string& name, const MeanColors& colors) {
+    std::string bytes;
+    if (compression_.webp) {
+      std::string error;
+      if (!picture_codecs("colours.webp")
+               .encode("webp", colors.width, colors.height, 4, colors.rgba.data(), bytes, error))
+        throw Error("the colours of " + name + " cannot be encoded as WebP: " + error);
+    } else {
+      bytes = encode_png(colors.width, colors.height, 4, colors.rgba, png_level);
+    }
+    const std::size_t view = add_view(bytes.data(), bytes.size(), 0);
+    const std::size_t image = add_to(
+        "images", {{"bufferView", view}, {"mimeType", compression_.webp ? "image/webp" : "image/png"}, {"name", name}});
+    json texture = {{"sampler", 0}};
+    if (compression_.webp)
+      texture["extensions"]["EXT_texture_webp"]["source"] = image;
+    else
+      texture["source"] = image;
+    return add_to("textures", texture);
   }
 
-  json primitive(const TextureSet& set, const Vec3& centre, std::size_t material) {
-    const Soup& soup = set.soup;
-    std::vector<float> positions, uvs;
-    Eigen::AlignedBox3f box;
-    for (std::size_t v = 0; v < soup.positions().size(); ++v) {
-      const Eigen::Vector3f p = (soup.positions()[v] - centre).cast<float>();
-      box.extend(p);
-      positions.insert(positions.end(), {p.x(), p.y(), p.z()});
-      uvs.insert(uvs.end(), {static_cast<float>(soup.uvs()[v].x()), static_cast<float>(1 - soup.uvs()[v].y())});
+  std::size_t add_material(const std::string& name, const MeanColors& colors) {
+    return add_to("materials", {{"name", name},
+                                {"pbrMetallicRoughness",
+                                 {{"baseColorTexture", {{"index", add_color_texture(name, colors)}}},
+                                  {"metallicFactor", 0},
+                                  {"roughnessFactor", 1}}},
+                                {"alphaMode", "MASK"},
+                                {"alphaCutoff", 0.5},
+                                {"doubleSided", true},
+                                {"extensions", {{"KHR_materials_unlit", json::object()}}}});
+  }
+
+  std::size_t add_accessor(std::size_t view, int type, std::size_t count, const char* shape) {
+    return add_to("accessors", {{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
+  }
+
+  // Positions relative to a centre. `scale`: of the node, by which quantised positions are multiplied.
+  std::size_t add_positions(const Soup& soup, const Vec3& centre, double& scale) {
+    std::vector<Vec3> places;
+    for (const Vec3& p : soup.positions()) places.push_back(p - centre);
+    if (compression_.quantized) {
+      const QuantizedPositions quantized = quantized_positions(places);
+      scale = quantized.scale;
+      const std::size_t made =
+          add_accessor(add_geometry(quantized.values.data(), places.size(), sizeof(quantized.values[0])), short_type,
+                       places.size(), "VEC3");
+      root_["accessors"][made]["normalized"] = true;
+      root_["accessors"][made]["min"] = quantized.least;
+      root_["accessors"][made]["max"] = quantized.most;
+      return made;
     }
-    const std::size_t vertices = soup.positions().size();
-    const auto accessor = [&](std::size_t view, int type, std::size_t count, const char* shape) {
-      return add_to("accessors", {{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
-    };
-    const std::size_t position = accessor(add_view(positions.data(), positions.size() * sizeof(float), vertex_target),
-                                          float_type, vertices, "VEC3");
-    root_["accessors"][position]["min"] = {box.min().x(), box.min().y(), box.min().z()};
-    root_["accessors"][position]["max"] = {box.max().x(), box.max().y(), box.max().z()};
-    const std::size_t uv =
-        accessor(add_view(uvs.data(), uvs.size() * sizeof(float), vertex_target), float_type, vertices, "VEC2");
-    const std::vector<Face>& faces = soup.faces();
-    const std::size_t indices = accessor(add_view(faces.data(), faces.size() * sizeof(Face), index_target),
-                                         unsigned_int_type, 3 * faces.size(), "SCALAR");
+    std::vector<Eigen::Vector3f> floats;
+    Eigen::AlignedBox3f box;
+    for (const Vec3& p : places) box.extend(floats.emplace_back(p.cast<float>()));
+    const std::size_t made =
+        add_accessor(add_geometry(floats.data(), floats.size(), sizeof(floats[0])), float_type, floats.size(), "VEC3");
+    root_["accessors"][made]["min"] = {box.min().x(), box.min().y(), box.min().z()};
+    root_["accessors"][made]["max"] = {box.max().x(), box.max().y(), box.max().z()};
+    return made;
+  }
+
+  std::size_t add_uvs(const Soup& soup) {
+    if (compression_.quantized)
+      if (const auto quantized = quantized_uvs(soup.uvs()); !quantized.empty()) {
+        const std::size_t made = add_accessor(add_geometry(quantized.data(), quantized.size(), sizeof(quantized[0])),
+                                              unsigned_short_type, quantized.size(), "VEC2");
+        root_["accessors"][made]["normalized"] = true;
+        return made;
+      }
+    std::vector<Eigen::Vector2f> floats;
+    for (const Vec2& uv : soup.uvs()) floats.emplace_back(static_cast<float>(uv.x()), static_cast<float>(1 - uv.y()));
+    return add_accessor(add_geometry(floats.data(), floats.size(), sizeof(floats[0])), float_type, floats.size(),
+                        "VEC2");
+  }
+
+  json primitive(const TextureSet& set, const Vec3& centre, std::size_t material, double& scale) {
+    const std::size_t position = add_positions(set.soup, centre, scale), uv = add_uvs(set.soup);
+    const std::vector<Face>& faces = set.soup.faces();
+    const std::size_t indices =
+        add_accessor(add_geometry(faces.data(), 3 * faces.size(), 0), unsigned_int_type, 3 * faces.size(), "SCALAR");
     return {{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}, {"material", material}};
   }
 
@@ -397,6 +486,8 @@ class GltfWriter {
   json channels_ = json::array(), samplers_ = json::array();  ///< of the animation
   bool features_;
   const std::optional<Vec3>& eye_;  ///< whose colours are taken; nothing: means
+  GltfCompression compression_;
+  std::size_t decompressed_ = 0;  ///< bytes of compressed buffer views
   std::map<const FeatureTexture*, std::vector<std::size_t>> feature_textures_;
   std::vector<const BakedObject*> object_order_;    ///< in which they were met
   std::map<const BakedObject*, json> object_sets_;  ///< the sets of each object in the extension
@@ -425,7 +516,7 @@ ExportReport write_glb(const Scene& scene, const fs::path& file, const ExportOpt
   options.sources.check_file(file);
   if (std::error_code error; fs::exists(file, error) && fs::file_size(file, error) > 0 && !is_own(file))
     throw FileError(file, "exists and is not a glTF file of Rebake, so it is not replaced; choose another name");
-  const GltfWriter document(scene, features, options.colors_from, progress);
+  const GltfWriter document(scene, features, options, progress);
   write_file_atomically(file, document.glb(), options.sources);
   ExportReport report;
   report.notes = document.notes();

@@ -10,6 +10,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/meshes/beside.h"
+#include "mesh_ops/formats/meshes/meshopt_codec.h"
 
 namespace rebake {
 
@@ -18,8 +19,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::array<const char*, 4> known_extensions{"KHR_materials_unlit", "KHR_texture_transform",
-                                                      "KHR_mesh_quantization", "EXT_texture_webp"};
+constexpr std::array<const char*, 5> known_extensions{"KHR_materials_unlit", "KHR_texture_transform",
+                                                      "KHR_mesh_quantization", "EXT_texture_webp", meshopt_extension};
 
 std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   std::uint32_t value = 0;
@@ -143,6 +144,9 @@ void GltfDocument::read_buffers() {
     } else {
       buffers_.push_back(k == 0 ? binary_ : std::string_view());
     }
+    // Stands for the decompressed bytes, and has none.
+    const json& extensions = buffer.value("extensions", json::object());
+    if (buffers_.back().empty() && extensions.is_object() && extensions.contains(meshopt_extension)) continue;
     if (buffers_.back().size() < number(buffer, "byteLength")) fail(fmt::format("buffer {} is too short", k));
   }
 }
@@ -174,8 +178,29 @@ std::size_t GltfDocument::number(const json& element, const char* key) const {
   return number(element, key, 0);
 }
 
+std::string_view GltfDocument::decompressed(std::size_t index, const json& extension) const {
+  const auto [known, added] = decompressed_.try_emplace(index);
+  if (!added) return known->second;
+  if (!extension.is_object()) fail(fmt::format("buffer view {}: {} is not an object", index, meshopt_extension));
+  try {
+    known->second = meshopt_decoded(extension, slice(index, extension));
+  } catch (const FieldError& error) {
+    fail(fmt::format("buffer view {}: {}", index, error.what()));
+  } catch (const json::exception&) {
+    fail(fmt::format("buffer view {}: {} is not valid", index, meshopt_extension));
+  }
+  return known->second;
+}
+
 std::string_view GltfDocument::view(std::size_t index) const {
   const json& made = element("bufferViews", index);
+  if (const auto extensions = made.find("extensions");
+      extensions != made.end() && extensions->is_object() && extensions->contains(meshopt_extension))
+    return decompressed(index, extensions->at(meshopt_extension));
+  return slice(index, made);
+}
+
+std::string_view GltfDocument::slice(std::size_t index, const json& made) const {
   const std::size_t buffer = number(made, "buffer"), offset = number(made, "byteOffset", 0),
                     length = number(made, "byteLength");
   if (buffer >= buffers_.size() || offset > buffers_[buffer].size() || length > buffers_[buffer].size() - offset)

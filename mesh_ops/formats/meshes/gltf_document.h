@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -40,6 +41,9 @@ class GltfDocument {
   std::size_t number(const nlohmann::json& element, const char* key) const;
 
  private:
+  // The bytes that an object with buffer, byteOffset and byteLength refers to. `index`: of its buffer view.
+  std::string_view slice(std::size_t index, const nlohmann::json& made) const;
+  std::string_view decompressed(std::size_t index, const nlohmann::json& extension) const;
   std::string read_container(std::string_view bytes);
   void read_buffers();
 
@@ -49,6 +53,7 @@ class GltfDocument {
   nlohmann::json root_;
   std::vector<std::string> fetched_;  // buffers with a URI
   std::vector<std::string_view> buffers_;
+  mutable std::map<std::size_t, std::string> decompressed_;  // buffer views with EXT_meshopt_compression
 };
 
 }  // namespace rebake

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <random>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -172,6 +173,82 @@ TEST_F(WriteGltf, TrianglesStayInPlaceAndHolesStayHoles) {
   for (int y = 0; y < back->sets[0].texels->height(); ++y)
     for (int x = 0; x < back->sets[0].texels->width(); ++x) holes += texels.at(x, y).opaque() ? 0 : 1;
   EXPECT_GT(holes, 0U);
+}
+
+// Each way of compression and all together: the same triangles within the stated errors, and equal texels.
+TEST_F(WriteGltf, CompressedFilesHoldTheSame) {
+  written(path("plain.glb"));
+  const auto plain = read_gltf_object(path("plain.glb"));
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"quantized"}, {"meshopt"}, {"webp"}, {"quantized", "meshopt", "webp"}}) {
+    const fs::path file = path(words.back() + std::to_string(words.size()) + ".glb");
+    ExportOptions options;
+    options.compression = gltf_compression(words);
+    write_gltf(document_.scene(), file, options, {});
+    EXPECT_LT(fs::file_size(file), fs::file_size(path("plain.glb"))) << words.back();
+    const auto back = read_gltf_object(file);
+    ASSERT_EQ(back->sets.size(), plain->sets.size());
+    const Soup &now = back->sets[0].soup, &then = plain->sets[0].soup;
+    ASSERT_EQ(now.triangle_count(), then.triangle_count());
+    const double step = plain->bounds().sizes().maxCoeff() / 65534;
+    const double bound = options.compression.quantized ? step + 1e-6 : 0;
+    for (std::size_t f = 0; f < now.triangle_count(); ++f) {
+      // Meshopt may rotate the corners of a triangle.
+      double nearest = 1;
+      for (std::size_t turn = 0; turn < 3; ++turn) {
+        double farthest = 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t a = now.faces()[f][(k + turn) % 3], b = then.faces()[f][k];
+          farthest = std::max({farthest, (now.positions()[a] - then.positions()[b]).cwiseAbs().maxCoeff(),
+                               (now.uvs()[a] - then.uvs()[b]).cwiseAbs().maxCoeff()});
+        }
+        nearest = std::min(nearest, farthest);
+      }
+      EXPECT_LE(nearest, bound) << words.back() << " triangle " << f;
+    }
+    EXPECT_EQ(back->sets[0].texels->width(), plain->sets[0].texels->width());
+    const TexelReader texels(*back->sets[0].texels), before(*plain->sets[0].texels);
+    for (int y = 0; y < plain->sets[0].texels->height(); ++y)
+      for (int x = 0; x < plain->sets[0].texels->width(); ++x) {
+        if (!before.at(x, y).opaque()) continue;
+        EXPECT_EQ(texels.at(x, y), before.at(x, y));
+      }
+  }
+  EXPECT_THROW(gltf_compression({"draco"}), FieldError);
+}
+
+TEST_F(WriteGltf, DamagedCompressionIsNamed) {
+  ExportOptions options;
+  options.compression.meshopt = true;
+  write_gltf(document_.scene(), path("a.glb"), options, {});
+  const std::string bytes = read_file(path("a.glb"));
+  const auto problem = [&](const std::string& from, const std::string& to) {
+    std::string changed = bytes;
+    changed.replace(changed.find(from), from.size(), to);
+    write_text(path("b.glb"), changed);
+    try {
+      read_gltf_object(path("b.glb"));
+    } catch (const FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(problem(R"("mode":"ATTRIBUTES")", R"("mode":"ATTRIBUTEZ")").find("mode"), std::string::npos);
+  EXPECT_NE(problem(R"("byteStride":12,"count")", R"("byteStride":13,"count")").find("mode"), std::string::npos);
+  const std::size_t binary = bytes.find("BIN", 20);
+  ASSERT_NE(binary, std::string::npos);
+  std::mt19937 random(1);
+  for (int k = 0; k < 200; ++k) {
+    std::string changed = bytes;
+    for (int flips = 0; flips < 20; ++flips)
+      changed[binary + 5 + random() % (changed.size() - binary - 5)] ^= static_cast<char>(1U << random() % 8);
+    write_text(path("b.glb"), changed);
+    try {
+      read_gltf_object(path("b.glb"));  // finds the damage, or reads other numbers
+    } catch (const FileError&) {
+      continue;
+    }
+  }
 }
 
 // Every direction shows the same colour, so nothing is lost, and the bytes are the object's own.
