@@ -15,6 +15,7 @@
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/images/png_writer.h"
 #include "mesh_ops/formats/scene_files.h"
+#include "render/web_page/scene_motion.h"
 #include "render/web_page/web_page.h"
 
 namespace rebake {
@@ -121,7 +122,9 @@ void run(Session& session, const PublishAction& action) {
     sources.check_file(action.out);
     refuse_other_file(action.out);
   }
-  const Scene& scene = session.scene();
+  // Before the light, whose maps belong to the vertices that the page has.
+  const PosedScene posed = posed_scene(session.scene());
+  const Scene& scene = posed.scene;
   const auto write = [&](const auto& commit) {
     const Lighting lighting = lit(scene, session.progress);
     WebPageOptions options = options_of(scene, action);
@@ -129,8 +132,8 @@ void run(Session& session, const PublishAction& action) {
     std::optional<Scene> before;
     if (!action.before.empty()) before = opened(action.before, session.progress);
     const Lighting before_lighting = before ? lit(*before, session.progress) : Lighting();
-    const WebPage page = web_page({scene, lighting}, options, session.progress,
-                                  before ? std::optional<LitScene>({*before, before_lighting}) : std::nullopt);
+    const WebPage page = web_page({scene, lighting, &posed.poses}, options, session.progress,
+                                  before ? std::optional<LitScene>({*before, before_lighting, nullptr}) : std::nullopt);
     commit(page);
     session.outputs.push_back(action.out);
     session.say(fmt::format("published {}: {} triangles, {:.2f} MB", action.out, page.triangles,

@@ -25,21 +25,26 @@ Scene without_bend_keys(const Scene& scene) {
 
 }  // namespace
 
-bool has_bend_keyframes(const Scene& scene) {
-  const std::vector<PlacedNode> nodes = placed_nodes(scene);
-  return std::any_of(nodes.begin(), nodes.end(), [](const PlacedNode& placed) {
-    return placed.node->motion && !placed.node->motion->bends.empty();
-  });
+PosedScene posed_scene(const Scene& scene) {
+  PosedScene posed{scene, {}};
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object || !placed.node->motion || placed.node->motion->bends.empty()) continue;
+    BendPoses poses = bend_poses(*placed.node);
+    posed.scene = with_changed(posed.scene, placed.node->id, [&](Node& node) { node.object = poses.rest; });
+    posed.poses.emplace(placed.node->id, std::move(poses));
+  }
+  return posed;
 }
 
 std::optional<SceneMotion> scene_motion(const Scene& whole) {
+  if (!has_keyframes(whole)) return std::nullopt;
+  // Bends are poses, see posed_scene().
   const Scene scene = without_bend_keys(whole);
-  if (!has_keyframes(scene)) return std::nullopt;
   SceneMotion motion;
   // Long motions get fewer samples per second.
   constexpr double most_samples = 20000;
-  motion.rate = std::min(motion.rate, most_samples / std::max(1.0, duration(scene)));
-  motion.samples = static_cast<std::size_t>(std::ceil(duration(scene) * motion.rate)) + 1;
+  motion.rate = std::min(motion.rate, most_samples / std::max(1.0, duration(whole)));
+  motion.samples = static_cast<std::size_t>(std::ceil(duration(whole) * motion.rate)) + 1;
   std::map<NodeId, NodePlaces> places;
   for (const PlacedNode& placed : placed_nodes(scene)) places[placed.node->id].rest = placed.to_world;
   for (std::size_t t = 0; t < motion.samples; ++t) {

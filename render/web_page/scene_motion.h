@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "mesh_ops/formats/motion_samples.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
@@ -24,9 +25,15 @@ struct SceneMotion {
   double duration() const { return static_cast<double>(samples - 1) / rate; }
 };
 
-/// Nothing if no place and no camera has keyframes. Throws EditError for places that cannot be interpolated.
+/// Nothing without keyframes. Throws EditError for places that cannot be interpolated.
 std::optional<SceneMotion> scene_motion(const Scene& scene);
-/// Whether a node bends by keyframes.
-bool has_bend_keyframes(const Scene& scene);
+
+/// A scene whose nodes that bend by keyframes have the vertices of their poses.
+struct PosedScene {
+  Scene scene;
+  std::map<NodeId, BendPoses> poses;
+};
+/// Gives poses to visible nodes with keyframes of bends. Throws as scene_at() does.
+PosedScene posed_scene(const Scene& scene);
 
 }  // namespace rebake

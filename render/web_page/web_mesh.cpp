@@ -21,7 +21,7 @@ class Streams {
  public:
   explicit Streams(nlohmann::json& manifest) : manifest_(manifest) { manifest_ = nlohmann::json::array(); }
 
-  void add(const char* name, const std::vector<std::int32_t>& values) {
+  void add(const std::string& name, const std::vector<std::int32_t>& values) {
     manifest_.push_back({{"name", name}, {"count", values.size()}});
     const std::size_t first = bytes_.size(), count = values.size();
     bytes_.resize(first + 4 * count);
@@ -107,16 +107,30 @@ void add_texels(Streams& streams, const Order& order, const PreparedSurface& sur
                 }));
 }
 
-void add_rotations(Streams& streams, const Order& order, const std::vector<PackedRotation>& rotations) {
+// Rotations of a soup's vertices; no rotations are identities. `pose`: number of the pose, or empty.
+void add_rotations(Streams& streams, const Order& order, const Soup& soup, const std::string& pose = "") {
   std::array<Values, 5> streams_of_parts;
   for (const std::uint32_t v : order.vertices) {
-    const WebRotation rotation = web_rotation(rotations[v].matrix());
+    const WebRotation rotation =
+        web_rotation(soup.rotations() != nullptr ? (*soup.rotations())[v].matrix() : Mat3::Identity());
     for (std::size_t k = 0; k < 4; ++k) streams_of_parts[k].push_back(rotation.parts[k]);
     streams_of_parts[4].push_back(rotation.mirrored);
   }
   const char* const names[] = {"qx", "qy", "qz", "qw", "mirrored"};
-  for (std::size_t k = 0; k < 5; ++k) streams.add(names[k], streams_of_parts[k]);
+  for (std::size_t k = 0; k < 5; ++k) streams.add(names[k] + pose, streams_of_parts[k]);
 }
+
+// Positions relative to an origin, on a grid.
+void add_positions(Streams& streams, const Order& order, const Soup& soup, const Vec3& origin, double step,
+                   const std::string& pose = "") {
+  const char* const names[] = {"x", "y", "z"};
+  for (const int axis : {0, 1, 2})
+    streams.add(names[axis] + pose, values_of(order, [&](std::uint32_t v) {
+                  return on_grid(soup.positions()[v][axis] - origin[axis], step);
+                }));
+}
+
+Vec3 origin_of(const Soup& soup) { return soup.bounds().isEmpty() ? Vec3(0, 0, 0) : Vec3(soup.bounds().center()); }
 
 }  // namespace
 
@@ -136,20 +150,16 @@ std::string gzipped(std::string_view bytes) {
   return {packed.data(), size};
 }
 
-WebMesh web_mesh(const PreparedSurface& surface, double step, const LightMap* light, nlohmann::json& manifest) {
+WebMesh web_mesh(const PreparedSurface& surface, double step, bool rotates, const LightMap* light,
+                 nlohmann::json& manifest) {
   const Order order = order_of(surface);
   const Soup& soup = surface.source.soup;
-  const Vec3 origin = soup.bounds().isEmpty() ? Vec3(0, 0, 0) : Vec3(soup.bounds().center());
+  const Vec3 origin = origin_of(soup);
   Streams streams(manifest["streams"]);
   streams.add("corners", order.corners);
-  for (const int axis : {0, 1, 2})
-    streams.add(
-        axis == 0   ? "x"
-        : axis == 1 ? "y"
-                    : "z",
-        values_of(order, [&](std::uint32_t v) { return on_grid(soup.positions()[v][axis] - origin[axis], step); }));
+  add_positions(streams, order, soup, origin, step);
   add_texels(streams, order, surface);
-  if (soup.rotations() != nullptr) add_rotations(streams, order, *soup.rotations());
+  if (rotates) add_rotations(streams, order, soup);
   if (light != nullptr)
     for (const int axis : {0, 1})
       streams.add(axis == 0 ? "light_x" : "light_y", values_of(order, [&](std::uint32_t v) {
@@ -165,6 +175,19 @@ WebMesh web_mesh(const PreparedSurface& surface, double step, const LightMap* li
   manifest["texelSteps"] = web_texel_steps;
   manifest["origin"] = {origin.x(), origin.y(), origin.z()};
   return mesh;
+}
+
+std::string web_poses(const PreparedSurface& surface, double step, bool rotates, const std::vector<const Soup*>& poses,
+                      nlohmann::json& manifest) {
+  const Order order = order_of(surface);
+  const Vec3 origin = origin_of(surface.source.soup);
+  Streams streams(manifest["streams"]);
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const std::string number = std::to_string(k);
+    add_positions(streams, order, *poses[k], origin, step, number);
+    if (rotates) add_rotations(streams, order, *poses[k], number);
+  }
+  return gzipped(streams.bytes());
 }
 
 WebTexels web_texels(const PreparedSurface& surface, WebImageCoding coding) {

@@ -19,8 +19,15 @@ struct WebMesh {
 };
 
 /// Encodes the triangles of a surface that may show opaque texels. `step`: spacing of the grid of positions, in object
-/// units. `light`: its light map, or null. Adds "vertices", "triangles", "streams", "step", "origin" to `manifest`.
-WebMesh web_mesh(const PreparedSurface& surface, double step, const LightMap* light, nlohmann::json& manifest);
+/// units. `rotates`: with rotations, of vertices without any too. `light`: its light map, or null. Adds "vertices",
+/// "triangles", "streams", "step", "origin" to `manifest`.
+WebMesh web_mesh(const PreparedSurface& surface, double step, bool rotates, const LightMap* light,
+                 nlohmann::json& manifest);
+
+/// Positions and rotations of the vertices of web_mesh() in several poses of the same surface, in the same way
+/// and order. Fills in the streams: x0, y0, z0, qx0 … of the first pose, and so on.
+std::string web_poses(const PreparedSurface& surface, double step, bool rotates, const std::vector<const Soup*>& poses,
+                      nlohmann::json& manifest);
 
 /// The texels of a surface as two images, packed as on the GPU. All bytes of transparent texels are 0.
 struct WebTexels {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -87,8 +88,11 @@ struct Kind {
 class Publisher {
  public:
   // `prefix`: of the names of its files.
-  Publisher(const FramePlan& plan, const WebPageOptions& options, std::string prefix, WebPage& page)
+  // `poses`: of nodes that bend, or null.
+  Publisher(const FramePlan& plan, const WebPageOptions& options, std::string prefix, WebPage& page,
+            const std::map<NodeId, BendPoses>* poses = nullptr)
       : plan_(plan),
+        poses_(poses),
         frame_list_(plan.frames),
         camera_to_world_(Affine(world_to_camera(plan.view.camera).transpose())),
         options_(options),
@@ -98,7 +102,7 @@ class Publisher {
     for (const Draw& draw : plan.draws) frame_of_.push_back(draw.frame);
     for (const Draw& draw : plan.draws) {
       light_ = std::max(light_, light_of(draw));
-      rays_ = rays_ || (draw.set.soup.rotations() != nullptr && plan.uses_view_direction);
+      rays_ = rays_ || rotates(draw);
       glossy_ = glossy_ || is_glossy(draw);
     }
     if (glossy_) light_ = 2;  // highlights are added
@@ -138,7 +142,8 @@ class Publisher {
     };
     say("node target", frames_,
         frames_ ? fmt::format("{} decoders or orientations", frame_list_.size()) : "one decoder and orientation");
-    say("rotated rays", rays_, rays_ ? "edits rotated triangles" : "no triangle was rotated relative to its object");
+    say("rotated rays", rays_,
+        rays_ ? "edits or bends rotate triangles" : "no triangle was rotated relative to its object");
     say("light maps", light_ > 0, light_ > 0 ? "light follows edits" : "light changes nothing");
     if (light_ > 0)
       say("moving highlights", glossy_, glossy_ ? "specular surfaces were rotated" : "no rotated surface is specular");
@@ -193,15 +198,24 @@ class Publisher {
             {"rate", motion.rate},
             {"samples", motion.samples},
             {"draws", moving_},
+            {"bends", bends_},
             {"camera", !motion.cameras.empty()}};
   }
 
+  // Whether edits rotated triangles of a draw, or its poses do.
+  bool has_rotations(const Draw& draw) const {
+    if (draw.set.soup.rotations() != nullptr) return true;
+    if (poses_ == nullptr || !poses_->contains(draw.node)) return false;
+    const auto& poses = poses_->at(draw.node).poses;
+    return std::any_of(poses.begin(), poses.end(), [](const auto& pose) { return pose->any_rotations(); });
+  }
+  bool rotates(const Draw& draw) const { return plan_.uses_view_direction && has_rotations(draw); }
   static bool is_glossy(const Draw& draw) { return draw.light && draw.light->gloss; }
   static int light_of(const Draw& draw) { return !draw.light ? 0 : draw.light->offset.empty() ? 1 : 2; }
 
   json draw_of(const Draw& draw, std::size_t number) {
     const Affine to_world = camera_to_world_ * draw.to_camera;
-    Kind kind{draw.set.soup.rotations() != nullptr && plan_.uses_view_direction, light_of(draw), is_glossy(draw)};
+    Kind kind{rotates(draw), light_of(draw), is_glossy(draw)};
     kinds_[kind.name()] = kind;
     box_.extend(transformed(draw.set.soup.bounds(), to_world));
     json result = {{"set", set_of(draw, number)},
@@ -272,7 +286,8 @@ class Publisher {
       }
     const PreparedSurface surface = prepared_surface(draw.set, false);
     json set;
-    const WebMesh mesh = web_mesh(surface, step_of(draw), draw.light.get(), set);
+    const WebMesh mesh = web_mesh(surface, step_of(draw), has_rotations(draw), draw.light.get(), set);
+    add_poses(draw, surface, number);
     triangles_ += mesh.triangles;
     set["mesh"] = add_file(fmt::format("mesh{}.gz", number), mesh.bytes);
     WebTexels texels = web_texels(surface, options_.coding);
@@ -283,6 +298,27 @@ class Publisher {
     sets_.push_back(set);
     known_.push_back({&draw, mesh.triangles});
     return sets_.size() - 1;
+  }
+
+  // The poses of a set that is about to be added, if it bends.
+  void add_poses(const Draw& draw, const PreparedSurface& surface, std::size_t number) {
+    if (poses_ == nullptr) return;
+    const auto found = poses_->find(draw.node);
+    if (found == poses_->end()) return;
+    const BendPoses& bend = found->second;
+    const auto set = std::find_if(bend.rest->sets.begin(), bend.rest->sets.end(), [&](const TextureSet& one) {
+      return one.soup.shared_positions() == draw.set.soup.shared_positions();
+    });
+    if (set == bend.rest->sets.end()) throw std::logic_error("a draw that is not of its node's poses");
+    std::vector<const Soup*> soups;
+    for (const auto& pose : bend.poses) {
+      soups.push_back(&pose->sets[static_cast<std::size_t>(set - bend.rest->sets.begin())].soup);
+      box_.extend(transformed(soups.back()->bounds(), camera_to_world_ * draw.to_camera));
+    }
+    json entry = {{"set", sets_.size()}, {"seconds", bend.seconds}};
+    entry["mesh"] = add_file(fmt::format("poses{}.gz", number),
+                             web_poses(surface, step_of(draw), has_rotations(draw), soups, entry));
+    bends_.push_back(entry);
   }
 
   // Equal files are carried once.
@@ -332,6 +368,8 @@ class Publisher {
   }
 
   const FramePlan& plan_;
+  const std::map<NodeId, BendPoses>* poses_;
+  json bends_ = json::array();
   std::vector<DecodeFrame> frame_list_;
   std::vector<std::size_t> frame_of_, moving_;  // frame of each draw; draws with keyframes
   Affine camera_to_world_;
@@ -359,7 +397,7 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
   WebPage page;
   const FramePlan plan = plan_of_all(scene.scene, scene.lighting);
   const std::optional<SceneMotion> motion = scene_motion(scene.scene);
-  Publisher publisher(plan, options, "", page);
+  Publisher publisher(plan, options, "", page, scene.poses);
   json manifest = publisher.manifest(motion ? &*motion : nullptr, progress);
   page.triangles = publisher.triangles();
   page.decisions = publisher.decisions();
@@ -372,7 +410,17 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
                             motion->cameras.empty() ? "" : " and the camera", motion->duration()));
   if (motion && scene.lighting.maps.size() > 0)
     say("light of moving nodes", false, "light maps stay as they are while nodes move");
-  if (has_bend_keyframes(scene.scene)) say("bends by keyframes", false, "the page moves nodes and the camera only");
+  double deviation = 0;
+  if (scene.poses != nullptr)
+    for (const auto& [node, bend] : *scene.poses)
+      deviation = std::max(deviation, bend.deviation / bend.rest->bounds().diagonal().norm());
+  const bool bends = scene.poses != nullptr && !scene.poses->empty();
+  say("bends by keyframes", bends,
+      bends
+          ? fmt::format("{} nodes bend by poses; between them vertices are at most {:.2g} of their object's size from "
+                        "their places",
+                        scene.poses->size(), deviation)
+          : "nothing bends");
   say("scene before the edits", before.has_value(), before ? "asked for" : "not asked for");
   for (const auto& [name, camera] : options.views) {
     json view = {{"name", name}, {"camera", json_of(camera)}};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh_ops/base/progress.h"
+#include "mesh_ops/formats/motion_samples.h"
 #include "mesh_ops/light/lighting.h"
 #include "mesh_ops/scene/scene.h"
 #include "render/web_page/web_image.h"
@@ -34,6 +35,7 @@ struct WebPageOptions {
 struct LitScene {
   const Scene& scene;
   const Lighting& lighting;
+  const std::map<NodeId, BendPoses>* poses = nullptr;  ///< see posed_scene(); null: no node bends
 };
 
 /// A page as files, and the decisions for it.
@@ -47,9 +49,9 @@ struct WebPage {
 bool is_page_file(const std::filesystem::path& path);
 
 /// Makes a page that shows the visible nodes of a scene by Rebake's rule. It carries only the shaders and data that the
-/// scene calls for; keyframes of places and of the camera are sampled 30 times per second. `before`: the scene before
-/// the edits, which the page then can show too; files that both need are carried once. Throws EditError if nothing is
-/// visible, DeviceError and FileError if the files of the page are missing.
+/// scene calls for; keyframes of places and of the camera are sampled 30 times per second, and bends are poses.
+/// `before`: the scene before the edits, which the page then can show too; files that both need are carried once.
+/// Throws EditError if nothing is visible, DeviceError and FileError if the files of the page are missing.
 WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Progress& progress = {},
                  const std::optional<LitScene>& before = std::nullopt);
 

@@ -158,6 +158,31 @@ class WebPage(unittest.TestCase):
         self.assertEqual(self.browser.evaluate("viewer.seconds"), 2)
         self.assertEqual(self.browser.messages, [])
 
+    def test_bends_play(self):
+        scene = self.scene(FICUS, {"op": "key", "node": "ficus", "time": 0, "degrees": 0, "interpolation": "linear"},
+                           {"op": "key", "node": "ficus", "time": 2, "degrees": 50},
+                           {"op": "key", "node": "ficus", "time": 0, "interpolation": "linear"},
+                           {"op": "key", "node": "ficus", "time": 2, "position": [0.4, 0, 0]})
+        page = self.publish(scene)
+        self.show(page)
+        self.expect_picture_of(scene)
+        bend, = json.loads((page / "scene.json").read_text())["motion"]["bends"]
+        self.assertGreater(len(bend["seconds"]), 3)
+        words = [w for key, value in CAMERA.items() for w in ("--" + key, ",".join(map(repr, value)) if isinstance(value, list) else value)]
+        # A pose itself, and the worst place between two.
+        between = (bend["seconds"][1] + bend["seconds"][2]) / 2
+        for seconds, least in ((2, 53), (bend["seconds"][1], 53), (between, 30)):
+            self.browser.evaluate(f"viewer.seek({seconds})")
+            own = self.at / "own.png"
+            code, text = rebake("render", scene, "--at", seconds, "-o", own, "--size", "400x400", *words)
+            self.assertEqual(code, 0, text)
+            code, text = rebake("compare", self.capture(CAMERA), own, "--min-psnr", least)
+            self.assertEqual(code, 0, f"{seconds} s: {text}")
+        before = self.capture(CAMERA).read_bytes()
+        self.browser.evaluate("viewer.lose = viewer.renderer.gl.getExtension('WEBGL_lose_context'), viewer.lose.loseContext()")
+        self.browser.evaluate("new Promise((done) => { viewer.addEventListener('restored', () => done(true)); setTimeout(() => viewer.lose.restoreContext(), 50); })")
+        self.assertEqual(self.capture(CAMERA).read_bytes(), before)
+
     def test_the_camera_follows_its_keyframes_until_somebody_moves_it(self):
         scene = self.scene(FICUS, *({"op": "key", "time": t, "camera": {"eye": eye, "target": [0, 0, 0]}}
                                     for t, eye in ((0, [0, 1, 4]), (1, [4, 1, 0]))))

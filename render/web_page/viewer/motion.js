@@ -1,18 +1,73 @@
 // @ts-check
-// Keyframes: places of draws and the camera at equal times, interpolated linearly between them.
+// Keyframes: places of draws and the camera at equal times, and poses of sets that bend, interpolated linearly.
 
-import {unpacked} from './scene.js';
+import {setRotation, streamsOf, unpacked} from './scene.js';
 
 /**
  * @typedef {import('./linear.js').Camera} Camera
- * @typedef {{file: import('./scene.js').FileEntry, rate: number, samples: number, draws: number[], camera: boolean}} MotionEntry
+ * @typedef {{set: number, seconds: number[], mesh: import('./scene.js').FileEntry, streams: {name: string, count: number}[]}} BendEntry
+ * @typedef {{file: import('./scene.js').FileEntry, rate: number, samples: number, draws: number[], bends: BendEntry[], camera: boolean}} MotionEntry
  */
 
 const numbersPerDraw = 21, numbersPerCamera = 13;  // 3×4 object to world and 3×3 world to decoder; see web_page.cpp
 
+/** The poses of one texture set. */
+class Bend {
+  /** @param {BendEntry} entry @param {import('./scene.js').SetEntry} set @param {Object<string, Int32Array>} streams */
+  constructor(entry, set, streams) {
+    this.entry = entry;
+    this.step = set.step;
+    this.streams = streams;
+  }
+
+  /**
+   * Moves the vertices of a mesh to a time.
+   * @param {import('./scene.js').Mesh} mesh @param {number} seconds
+   */
+  apply(mesh, seconds) {
+    const times = this.entry.seconds, {positions, rotations} = mesh;
+    let first = 0;
+    while (first + 2 < times.length && times[first + 1] <= seconds) ++first;
+    const next = Math.min(first + 1, times.length - 1), length = times[next] - times[first];
+    const share = length > 0 ? Math.max(0, Math.min(1, (seconds - times[first]) / length)) : 0;
+    /** @param {string} name */
+    const pair = (name) => [this.streams[name + first], this.streams[name + next]];
+    ['x', 'y', 'z'].forEach((name, axis) => {
+      const [a, b] = pair(name);
+      for (let v = 0; v < a.length; ++v) positions[3 * v + axis] = (a[v] + share * (b[v] - a[v])) * this.step;
+    });
+    if (!rotations) return;
+    const parts = ['qx', 'qy', 'qz', 'qw'].map(pair), mirrored = this.streams['mirrored' + first];
+    for (let v = 0; v < mirrored.length; ++v) {
+      // Opposite quaternions are the same rotation.
+      const sign = parts.reduce((sum, [a, b]) => sum + a[v] * b[v], 0) < 0 ? -1 : 1;
+      const q = parts.map(([a, b]) => a[v] + share * (sign * b[v] - a[v]));
+      setRotation(rotations, v, q[0], q[1], q[2], q[3], mirrored[v] !== 0);
+    }
+  }
+
+  /**
+   * Extends the boxes of a mesh's clusters, so that they hold all poses.
+   * @param {import('./scene.js').Mesh} mesh
+   */
+  extendClusters(mesh) {
+    for (const {first, count, low, high} of mesh.clusters)
+      for (let pose = 0; pose < this.entry.seconds.length; ++pose)
+        ['x', 'y', 'z'].forEach((name, axis) => {
+          const values = this.streams[name + pose];
+          for (let k = first; k < first + count; ++k) {
+            const value = values[mesh.corners[k]] * this.step;
+            low[axis] = Math.min(low[axis], value);
+            high[axis] = Math.max(high[axis], value);
+          }
+        });
+  }
+}
+
 export class Motion {
-  /** @param {import('./scene.js').Manifest} scene @param {Float64Array} values */
-  constructor(scene, values) {
+  /** @param {import('./scene.js').Manifest} scene @param {Float64Array} values @param {Bend[]} bends */
+  constructor(scene, values, bends) {
+    this.bends = bends;
     this.scene = scene;
     this.entry = /** @type {MotionEntry} */ (scene.motion);
     this.values = values;
@@ -24,10 +79,28 @@ export class Motion {
   get duration() { return (this.entry.samples - 1) / this.entry.rate; }
 
   /**
-   * Moves the draws of the scene to a time. Returns the camera at that time; null if it has no keyframes.
-   * @param {number} seconds @returns {Camera | null}
+   * To be called when a renderer has loaded the scene.
+   * @param {import('./renderer.js').Renderer} renderer
    */
-  apply(seconds) {
+  prepare(renderer) {
+    for (const bend of this.bends) {
+      const set = renderer.sets[bend.entry.set];
+      if (set) bend.extendClusters(set.mesh);
+    }
+  }
+
+  /**
+   * Moves the draws of the scene, and what bends, to a time. Returns the camera at that time; null if it has no
+   * keyframes.
+   * @param {number} seconds @param {import('./renderer.js').Renderer} renderer @returns {Camera | null}
+   */
+  apply(seconds, renderer) {
+    for (const bend of this.bends) {
+      const set = renderer.sets[bend.entry.set];
+      if (!set) continue;
+      bend.apply(set.mesh, seconds);
+      renderer.updateVertices(set);
+    }
     const at = Math.max(0, Math.min(this.entry.samples - 1, seconds * this.entry.rate));
     const first = Math.min(Math.floor(at), Math.max(0, this.entry.samples - 2)), share = at - first;
     const next = Math.min(first + 1, this.entry.samples - 1);
@@ -51,5 +124,7 @@ export class Motion {
 export async function loadMotion(scene) {
   if (!scene.motion) return null;
   const bytes = await unpacked(scene.motion.file, () => {});
-  return new Motion(scene, new Float64Array(bytes.buffer, bytes.byteOffset, bytes.byteLength >> 3));
+  const bends = await Promise.all(scene.motion.bends.map(async (entry) =>
+    new Bend(entry, scene.sets[entry.set], streamsOf(await unpacked(entry.mesh, () => {}), entry))));
+  return new Motion(scene, new Float64Array(bytes.buffer, bytes.byteOffset, bytes.byteLength >> 3), bends);
 }

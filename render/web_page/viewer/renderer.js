@@ -13,7 +13,7 @@ import {loadImage, loadLight, loadMesh} from './scene.js';
  * @typedef {import('./scene.js').Mesh} Mesh
  * @typedef {{program: WebGLProgram, at: (name: string) => WebGLUniformLocation | null}} Program
  * @typedef {{framebuffer: WebGLFramebuffer, textures: Object<string, WebGLTexture>, width: number, height: number}} Target
- * @typedef {{mesh: Mesh, array: WebGLVertexArrayObject, texels: WebGLTexture}} GpuSet
+ * @typedef {{mesh: Mesh, array: WebGLVertexArrayObject, positions: WebGLBuffer, rotations: WebGLBuffer | null, texels: WebGLTexture}} GpuSet
  */
 
 // Above this number of clusters in view, drawing each by its own call costs more than front-to-back order saves.
@@ -66,7 +66,7 @@ export class Renderer {
         [loadMesh(entry, received), loadImage(entry.texels.images[0], received), loadImage(entry.texels.images[1], received)]);
     for (const image of [image0, image1])
       if (image.width !== entry.texels.width || image.height !== entry.texels.height) throw Error('a feature image has the wrong size');
-    this.sets[number] = {mesh, array: this.vertexArray(mesh), texels: this.joined(image0, image1)};
+    this.sets[number] = {mesh, ...this.vertexArray(mesh), texels: this.joined(image0, image1)};
     image0.close();
     image1.close();
   }
@@ -142,18 +142,21 @@ export class Renderer {
     };
     /** @param {ArrayBufferView} data */
     const buffer = (data) => {
-      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      const made = /** @type {WebGLBuffer} */ (gl.createBuffer());
+      gl.bindBuffer(gl.ARRAY_BUFFER, made);
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+      return made;
     };
-    buffer(mesh.positions);
+    const positions = buffer(mesh.positions);
     attribute(0, mesh.positions, 3, 0, 0, false);
     buffer(mesh.texels);
     attribute(1, mesh.texels, 2, 0, 0, false);
     buffer(mesh.rectangles);
     attribute(6, mesh.rectangles, 4, 8, 0, true);
     attribute(7, mesh.rectangles, 2, 8, 0, true);  // the texels are packed already: a rectangle is at its own corner
+    let rotations = null;
     if (mesh.rotations) {
-      buffer(mesh.rotations);
+      rotations = buffer(mesh.rotations);
       for (const column of [0, 1, 2]) attribute(2 + column, mesh.rotations, 3, 36, 12 * column, false);
     }
     if (mesh.lightPlaces) {
@@ -163,7 +166,20 @@ export class Renderer {
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, mesh.corners, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
-    return array;
+    return {array, positions, rotations};
+  }
+
+  /**
+   * Uploads the positions and rotations of a set again.
+   * @param {GpuSet} set
+   */
+  updateVertices({mesh, positions, rotations}) {
+    const gl = this.gl;
+    gl.bindBuffer(gl.ARRAY_BUFFER, positions);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, mesh.positions);
+    if (!rotations || !mesh.rotations) return;
+    gl.bindBuffer(gl.ARRAY_BUFFER, rotations);
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, mesh.rotations);
   }
 
   /** @param {string} name @returns {Program} */

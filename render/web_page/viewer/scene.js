@@ -119,9 +119,9 @@ export async function loadLight(light, entry, channels, received) {
 
 /**
  * Streams of integers: successive differences, zigzag coded, in four planes of bytes.
- * @param {Uint8Array} bytes @param {SetEntry} set @returns {Object<string, Int32Array>}
+ * @param {Uint8Array} bytes @param {{mesh: FileEntry, streams: {name: string, count: number}[]}} set @returns {Object<string, Int32Array>}
  */
-function streamsOf(bytes, set) {
+export function streamsOf(bytes, set) {
   /** @type {Object<string, Int32Array>} */
   const streams = {};
   let at = 0;
@@ -141,19 +141,22 @@ function streamsOf(bytes, set) {
 }
 
 /**
- * Rotation matrices, column-major, of quaternions.
- * @param {Object<string, Int32Array>} s @param {number} count
+ * Sets the rotation matrix of a vertex, column-major, from a quaternion of any length.
+ * @param {Float32Array} rotations @param {number} vertex @param {number} qx @param {number} qy @param {number} qz @param {number} qw
+ * @param {boolean} mirrored
  */
-function rotationsOf(s, count) {
-  const rotations = new Float32Array(9 * count);
-  for (let k = 0; k < count; ++k) {
-    const size = Math.hypot(s.qx[k], s.qy[k], s.qz[k], s.qw[k]), sign = s.mirrored[k] ? -1 : 1;
-    const x = s.qx[k] / size, y = s.qy[k] / size, z = s.qz[k] / size, w = s.qw[k] / size;
-    rotations.set([1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w),
-      2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w),
-      2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)].map((m) => sign * m), 9 * k);
-  }
-  return rotations;
+export function setRotation(rotations, vertex, qx, qy, qz, qw, mirrored) {
+  const scale = 1 / (Math.hypot(qx, qy, qz, qw) || 1), sign = mirrored ? -1 : 1, x = qx * scale, y = qy * scale, z = qz * scale, w = qw * scale;
+  let at = 9 * vertex;
+  rotations[at++] = sign * (1 - 2 * (y * y + z * z));
+  rotations[at++] = sign * 2 * (x * y + z * w);
+  rotations[at++] = sign * 2 * (x * z - y * w);
+  rotations[at++] = sign * 2 * (x * y - z * w);
+  rotations[at++] = sign * (1 - 2 * (x * x + z * z));
+  rotations[at++] = sign * 2 * (y * z + x * w);
+  rotations[at++] = sign * 2 * (x * z + y * w);
+  rotations[at++] = sign * 2 * (y * z - x * w);
+  rotations[at] = sign * (1 - 2 * (x * x + y * y));
 }
 
 /** @param {Uint32Array} corners @param {Float32Array} positions @returns {Cluster[]} */
@@ -192,7 +195,10 @@ export async function loadMesh(set, received) {
   const corners = new Uint32Array(s.corners.buffer);
   /** @type {Mesh} */
   const mesh = {corners, positions, texels, rectangles, clusters: clustersOf(corners, positions)};
-  if (s.qx) mesh.rotations = rotationsOf(s, n);
+  if (s.qx) {
+    mesh.rotations = new Float32Array(9 * n);
+    for (let k = 0; k < n; ++k) setRotation(mesh.rotations, k, s.qx[k], s.qy[k], s.qz[k], s.qw[k], s.mirrored[k] !== 0);
+  }
   if (s.light_x) {
     mesh.lightPlaces = new Float32Array(2 * n);
     for (let k = 0; k < n; ++k) mesh.lightPlaces.set([s.light_x[k] / 256, s.light_y[k] / 256], 2 * k);

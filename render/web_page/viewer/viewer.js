@@ -66,6 +66,7 @@ class Viewer extends EventTarget {
     this.setUpTools();
     await this.loadAll();
     this.motion = await loadMotion(this.scene);
+    this.motion?.prepare(this.renderer);
     this.setUpPlayer();
     element('progress').hidden = true;
     await this.drawnAtRest();
@@ -110,9 +111,9 @@ class Viewer extends EventTarget {
    * @param {number} seconds
    */
   seek(seconds) {
-    if (!this.motion) throw Error('this page has no keyframes');
+    if (!this.motion || !this.edited) throw Error('this page has no keyframes');
     this.seconds = Math.max(0, Math.min(this.motion.duration, seconds));
-    const camera = this.motion.apply(this.seconds);
+    const camera = this.motion.apply(this.seconds, this.edited.renderer);
     // A camera that somebody moves is theirs until the film is played again.
     if (camera && this.follows) this.showStored(camera);
     /** @type {HTMLInputElement} */ (element('time')).value = String(this.seconds);
@@ -180,6 +181,8 @@ class Viewer extends EventTarget {
       this.renderer = new Renderer(canvas, this.scene);
       this.edited = {scene: this.scene, renderer: this.renderer};
       await this.loadAll();
+      this.motion?.prepare(this.renderer);
+      if (this.seconds !== undefined) this.seek(this.seconds);
       await this.drawnAtRest();
       this.dispatchEvent(new Event('restored'));
     } catch (error) {
