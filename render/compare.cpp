@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 
 #include "mesh_ops/base/error.h"
 
@@ -53,20 +54,21 @@ Plane product(const Plane& a, const Plane& b) {
   return out;
 }
 
-double ssim(const Image& a, const Image& b) {
+}  // namespace
+
+std::vector<double> ssim_map(const Image& a, const Image& b) {
   const Plane x = luma(a), y = luma(b);
   const auto blur = [&](const Plane& p) { return blurred(p, a.width, a.height); };
   const Plane mx = blur(x), my = blur(y), xx = blur(product(x, x)), yy = blur(product(y, y)), xy = blur(product(x, y));
   constexpr double c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255;
-  double total = 0;
+  std::vector<double> map;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double vx = xx[i] - mx[i] * mx[i], vy = yy[i] - my[i] * my[i], cov = xy[i] - mx[i] * my[i];
-    total += (2 * mx[i] * my[i] + c1) * (2 * cov + c2) / ((mx[i] * mx[i] + my[i] * my[i] + c1) * (vx + vy + c2));
+    map.push_back((2 * mx[i] * my[i] + c1) * (2 * cov + c2) /
+                  ((mx[i] * mx[i] + my[i] * my[i] + c1) * (vx + vy + c2)));
   }
-  return total / static_cast<double>(x.size());
+  return map;
 }
-
-}  // namespace
 
 Difference compare(const Image& a, const Image& b, int tolerance) {
   if (a.width != b.width || a.height != b.height)
@@ -92,7 +94,10 @@ Difference compare(const Image& a, const Image& b, int tolerance) {
   result.share_beyond = static_cast<double>(beyond) / pixels;
   result.psnr_db =
       squares == 0 ? std::numeric_limits<double>::infinity() : 10 * std::log10(255.0 * 255.0 * pixels * 3 / squares);
-  if (squares > 0) result.ssim = ssim(a, b);
+  if (squares > 0) {
+    const std::vector<double> map = ssim_map(a, b);
+    result.ssim = std::accumulate(map.begin(), map.end(), 0.0) / static_cast<double>(map.size());
+  }
   return result;
 }
 

@@ -13,6 +13,9 @@ struct Difference {
   double share_beyond = 0;  ///< share of pixels, 0 … 1, with a channel that differs by more than the tolerance
 };
 
+/// Structural similarity per pixel, see Difference::ssim. Both pictures have the same size.
+std::vector<double> ssim_map(const Image& a, const Image& b);
+
 /// Compares two pictures; `tolerance` is in 1/255. Throws Error if their sizes differ.
 Difference compare(const Image& a, const Image& b, int tolerance);
 

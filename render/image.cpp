@@ -155,7 +155,7 @@ std::string encoded(const Image& image, const std::filesystem::path& path) {
 
 }  // namespace
 
-Image read_image(const std::filesystem::path& path) {
+Image read_image(const std::filesystem::path& path, AlphaChannel alpha) {
   if (!std::filesystem::exists(path)) throw FileError(path, "does not exist");
   if (!std::filesystem::is_regular_file(path)) throw FileError(path, "is not a regular file");
   const auto reader = open_picture(path);
@@ -185,6 +185,9 @@ Image read_image(const std::filesystem::path& path) {
   image.rgb.reserve(raw.size());
   for (std::size_t p = 0; p < raw.size(); p += static_cast<std::size_t>(channels))
     for (std::size_t c = 0; c < 3; ++c) image.rgb.push_back(raw[p + (channels >= 3 ? c : 0)]);
+  if (const bool has_alpha = channels == 2 || channels == 4; has_alpha && alpha == AlphaChannel::keep)
+    for (auto p = static_cast<std::size_t>(channels) - 1; p < raw.size(); p += static_cast<std::size_t>(channels))
+      image.alpha.push_back(raw[p]);
   return image;
 }
 

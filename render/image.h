@@ -18,9 +18,10 @@ struct Image {
   bool operator==(const Image&) const = default;
 };
 
-/// Reads a picture file of at most 32768 × 32768 pixels; drops alpha and expands grey to RGB; the linear light
-/// of OpenEXR becomes display colours. Throws FileError.
-Image read_image(const std::filesystem::path& path);
+enum class AlphaChannel { drop, keep };
+/// Reads a picture file of at most 32768 × 32768 pixels; expands grey to RGB; the linear light of OpenEXR becomes
+/// display colours, without alpha. Throws FileError.
+Image read_image(const std::filesystem::path& path, AlphaChannel alpha = AlphaChannel::drop);
 /// Extensions of the formats that write_picture() writes: ".png, .jpg, …".
 std::string picture_extensions();
 /// Throws FileError if write_picture() would reject the path: its extension is that of a format that cannot be written,

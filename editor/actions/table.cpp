@@ -1,9 +1,10 @@
 #include "editor/actions/action.h"
 
 // Table of all actions, in help order.
-#define REBAKE_ACTIONS(X) \
-  X(RenderAction)         \
-  X(FilmAction)           \
+#define REBAKE_ACTIONS(X)     \
+  X(RenderAction)             \
+  X(FilmAction)               \
+  X(ComparePhotographsAction) \
   X(ExportAction) X(PublishAction) X(SaveAction) X(SaveProjectAction) X(ExportViewsAction) X(UndoAction) X(RedoAction)
 
 namespace rebake {

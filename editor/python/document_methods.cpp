@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "editor/actions/compare_photographs.h"
 #include "editor/actions/export_action.h"
 #include "editor/actions/film_action.h"
 #include "editor/actions/lit.h"
@@ -182,6 +183,7 @@ void add_edit_methods(py::class_<PyDocument>& type) {
   type.def("_publish", &written_with<PublishAction>);
   type.def("_write_picture", &written_with<RenderAction>);
   type.def("_film", &written_with<FilmAction>);
+  type.def("_compare_photographs", &written_with<ComparePhotographsAction>);
   py::dict scope;
   scope["__builtins__"] = py::module_::import("builtins");
   scope["__name__"] = "rebake";

@@ -175,6 +175,16 @@ class Document:
         picture: format of the pictures in a folder: png, exr, webp or jpg
         nodes: only these nodes and their children; default: all
         """
+    def compare_photographs(self, cameras: str, out: str | PathLike[str] = "", worst: int = 8, samples: int = 4, gain: bool = False, min_psnr: float | None = None) -> list[str]:
+        """Compares the scene with photographs: PSNR, SSIM and FLIP of each; returns notes.
+
+        cameras: camera file of the photographs, or the folder of a capture (transforms.json, COLMAP, poses_bounds.npy, camera_path.json)
+        out: folder for a table and, per photograph, a picture of it, the scene and the error; default: none
+        worst: number of photographs on the sheet worst.png
+        samples: samples per pixel: 1, 4 or 16
+        gain: first bring each picture to the exposure and white balance of its photograph
+        min_psnr: required mean PSNR in dB; exit code 4 below it
+        """
     def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", half_direction: bool | None = None, direction_first: bool | None = None, bgr: bool | None = None, alpha: Literal["halved", "plain"] | None = None, no_holes: bool | None = None, linear: int | None = None, ground: bool = False, content: str = "") -> None:
         """Reads a scene or a textured mesh into the scene.
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "editor/actions/compare_photographs.h"
 #include "editor/actions/export_action.h"
 #include "editor/actions/film_action.h"
 #include "editor/actions/publish_action.h"
@@ -223,7 +224,10 @@ std::vector<std::pair<Method, std::string>> writing_methods() {
       {action_method<RenderAction>("write_picture", "Renders the scene to a picture file; returns notes."),
        "_write_picture"},
       {action_method<FilmAction>("film", "Renders a film of the scene, which moves by its keyframes; returns notes."),
-       "_film"}};
+       "_film"},
+      {action_method<ComparePhotographsAction>(
+           "compare_photographs", "Compares the scene with photographs: PSNR, SSIM and FLIP of each; returns notes."),
+       "_compare_photographs"}};
 }
 
 }  // namespace

@@ -1,0 +1,210 @@
+#include "editor/actions/compare_photographs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "editor/actions/describe_action.h"
+#include "editor/actions/lit.h"
+#include "editor/actions/views.h"
+#include "editor/document/replaced_work.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/photo_names.h"
+#include "mesh_ops/formats/cameras/photographs.h"
+#include "render/contact_sheet.h"
+#include "render/photograph.h"
+#include "render/picture.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* table_name = "photographs.csv";
+constexpr const char* table_header = "photograph,pixels,PSNR dB,SSIM,FLIP\n";
+constexpr const char* sheet_name = "worst.png";
+
+struct Row {
+  std::string name;  // without extension; unique
+  PhotographErrors errors;
+  Image triptych;  // photograph, picture, FLIP
+};
+
+// Photograph, picture and error beside each other.
+Image triptych_of(const Photograph& photograph, const Image& picture, const PhotographErrors& errors) {
+  return contact_sheet({photograph.image, picture, error_colors(errors.map, picture.width, picture.height)}, 3, 0,
+                       {0, 0, 0});
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + '"';
+}
+
+std::string table_of(const std::vector<Row>& rows) {
+  std::string text = table_header;
+  for (const Row& row : rows)
+    text += fmt::format("{},{},{:.4f},{:.5f},{:.5f}\n", quoted(row.name), row.errors.pixels, row.errors.psnr_db,
+                        row.errors.ssim, row.errors.flip);
+  return text;
+}
+
+// The files that are written. Throws FileError if one exists that this action did not write.
+void check_output(const fs::path& folder, const std::vector<std::string>& names, const SourceGuard& sources) {
+  std::error_code error;
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error)) throw FileError(folder, "is not a folder");
+  for (const std::string& name : names) {
+    const fs::path file = folder / (name + ".png");
+    sources.check_file(file);
+    refuse_replacing_work(file);
+    if (fs::exists(fs::symlink_status(file, error)) && (fs::is_symlink(file, error) || !is_rendered_picture(file)))
+      throw FileError(file, "exists and was not made by Rebake, or is a link; choose another folder");
+  }
+  const fs::path table = folder / table_name;
+  sources.check_file(table);
+  if (fs::exists(table, error) && !read_file(table).starts_with(table_header))
+    throw FileError(table, "exists and is not a table of this comparison; choose another folder");
+}
+
+// Sides of a sheet are limited, so large pictures are halved until they fit.
+Image halved(const Image& image) {
+  Image half{image.width / 2, image.height / 2, {}, {}};
+  for (int y = 0; y < half.height; ++y)
+    for (int x = 0; x < half.width; ++x)
+      for (int c = 0; c < 3; ++c) {
+        int sum = 0;
+        for (int k = 0; k < 4; ++k)
+          sum += image.rgb[static_cast<std::size_t>(3 * ((2 * y + k / 2) * image.width + 2 * x + k % 2) + c)];
+        half.rgb.push_back(static_cast<std::uint8_t>((sum + 2) / 4));
+      }
+  return half;
+}
+
+// The worst views below each other.
+Image sheet_of(std::vector<Row> rows, int count) {
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.errors.psnr_db < b.errors.psnr_db; });
+  rows.resize(std::min(rows.size(), static_cast<std::size_t>(count)));
+  int width = 0, height = 0;
+  std::vector<Image> pictures;
+  for (Row& row : rows) {
+    Image picture = std::move(row.triptych);
+    constexpr int widest = 1800;
+    while (picture.width > widest) picture = halved(picture);
+    width = std::max(width, picture.width);
+    height = std::max(height, picture.height);
+    pictures.push_back(std::move(picture));
+  }
+  for (Image& picture : pictures) {
+    Image padded{width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), 255), {}};
+    for (int y = 0; y < picture.height; ++y)
+      std::copy_n(&picture.rgb[static_cast<std::size_t>(3 * y * picture.width)], 3 * picture.width,
+                  &padded.rgb[static_cast<std::size_t>(3 * y * width)]);
+    picture = std::move(padded);
+  }
+  return contact_sheet(pictures, 1, 8, {255, 255, 255});
+}
+
+}  // namespace
+
+std::vector<fs::path> ComparePhotographsAction::input_files(const nlohmann::json& object) {
+  const auto cameras = object.find("cameras");
+  if (cameras == object.end() || !cameras->is_string()) return {};
+  const std::string path = cameras->get<std::string>();
+  std::vector<std::string> notes;
+  std::vector<fs::path> files = camera_format_for(path, "").files(path);
+  for (fs::path& file : named_photographs(path, read_cameras(path, "", {}, notes))) files.push_back(std::move(file));
+  return files;
+}
+
+void run(Session& session, const ComparePhotographsAction& action) {
+  if (action.cameras.empty()) throw FieldError("cameras", "is empty");
+  if (action.worst < 1 || action.worst > 100) throw FieldError("worst", "must lie between 1 and 100");
+  if (action.min_psnr && std::isnan(*action.min_psnr)) throw FieldError("min_psnr", "must be a number (dB)");
+  const Scene& scene = session.scene();
+  std::vector<std::string> notes, dropped;
+  const std::vector<PhotoCamera> cameras = read_cameras(action.cameras, "", {}, notes);
+  const std::vector<Camera> views = views_of(cameras, dropped);
+  for (const fs::path& file : ComparePhotographsAction::input_files({{"cameras", action.cameras}}))
+    session.document.protect_file(file, "a file of the capture");
+  for (const std::string& note : notes) session.say(fmt::format("warning: {}: {}", action.cameras, note));
+  const std::vector<std::string> names = photo_names(cameras);
+  const SourceGuard sources = session.document.sources();
+  if (!action.out.empty()) {
+    std::vector<std::string> files = names;
+    files.emplace_back(fs::path(sheet_name).stem().string());
+    check_output(action.out, files, sources);
+  }
+  const Lighting lighting = lit(scene, session.progress);
+  std::vector<Row> rows;
+  std::size_t resampled = 0, missing = 0;
+  std::string first_missing;
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    session.progress.at(fmt::format("comparing photograph {} of {}", k + 1, cameras.size()),
+                        static_cast<double>(k) / static_cast<double>(cameras.size()));
+    const fs::path folder = capture_folder(action.cameras);
+    if (photograph_at(folder, cameras[k].name).empty()) {
+      if (missing++ == 0) first_missing = cameras[k].name;
+      continue;
+    }
+    const Photograph photograph = read_photograph(cameras[k], views[k], folder, scene.background);
+    resampled += photograph.resampled ? 1 : 0;
+    const View view =
+        resolve_view(scene, photograph.camera, "", photograph.image.width, photograph.image.height, action.samples);
+    Image picture = session.renderer().render(scene, view, {}, &lighting);
+    if (action.gain) picture = with_gain(picture, exposure_gain(photograph, picture));
+    Row row{names[k], errors_against(photograph, picture), {}};
+    row.triptych = triptych_of(photograph, picture, row.errors);
+    rows.push_back(std::move(row));
+  }
+  if (missing > 0)
+    session.say(fmt::format("warning: {} of {} photographs are missing, the first is \"{}\"", missing, cameras.size(),
+                            first_missing));
+  if (rows.empty()) throw FileError(action.cameras, "none of its photographs exists");
+  if (resampled > 0)
+    session.say(fmt::format("note: {} photographs were resampled without distortion and off-centre principal points",
+                            resampled));
+  double psnr = 0, ssim = 0, flip = 0;
+  for (const Row& row : rows) {
+    session.report(fmt::format("{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f}", row.name, row.errors.psnr_db, row.errors.ssim,
+                               row.errors.flip));
+    psnr += row.errors.psnr_db / static_cast<double>(rows.size());
+    ssim += row.errors.ssim / static_cast<double>(rows.size());
+    flip += row.errors.flip / static_cast<double>(rows.size());
+  }
+  session.say(fmt::format("mean of {} photographs{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f}", rows.size(),
+                          action.gain ? " after a gain per channel" : "", psnr, ssim, flip));
+  if (!action.out.empty()) {
+    std::error_code error;
+    fs::create_directories(action.out, error);
+    if (error) throw FileError(action.out, "cannot be created: " + error.message());
+    for (const Row& row : rows) write_picture(row.triptych, fs::path(action.out) / (row.name + ".png"), sources);
+    write_file_atomically(fs::path(action.out) / table_name, table_of(rows), sources);
+    write_picture(sheet_of(std::move(rows), action.worst), fs::path(action.out) / sheet_name, sources);
+    session.outputs.push_back(action.out);
+    session.say(fmt::format("wrote the comparison to {}; {} shows the worst", action.out, sheet_name));
+  }
+  if (action.min_psnr && !(psnr >= *action.min_psnr)) session.below_requested_psnr = true;
+}
+
+REBAKE_DESCRIBE_ACTION(
+    ComparePhotographsAction,
+    "Compares the scene with photographs: PSNR, SSIM and FLIP of each, and pictures of the errors.",
+    (auto& action, auto& visit) {
+      visit("cameras", action.cameras, Need::required,
+            "camera file of the photographs, or the folder of a capture (transforms.json, COLMAP, poses_bounds.npy, "
+            "camera_path.json)");
+      visit("out", action.out, Need::optional,
+            "folder for a table and, per photograph, a picture of it, the scene and the error; default: none");
+      visit("worst", action.worst, Need::optional, "number of photographs on the sheet worst.png");
+      visit("samples", action.samples, Need::optional, "samples per pixel: 1, 4 or 16");
+      visit("gain", action.gain, Need::optional,
+            "first bring each picture to the exposure and white balance of its photograph");
+      visit("min_psnr", action.min_psnr, Need::optional, "required mean PSNR in dB; exit code 4 below it");
+    })
+
+}  // namespace rebake

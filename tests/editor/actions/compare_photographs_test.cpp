@@ -1,0 +1,63 @@
+// Scenes against photographs: pictures of the scene itself are equal, and only own files are replaced.
+#include "editor/actions/compare_photographs.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "mesh_ops/base/files.h"
+#include "tests/support/made_scenes.h"
+#include "tests/support/script_fixture.h"
+
+namespace rebake::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ComparePhotographs : public Script {
+ protected:
+  ComparePhotographs() {
+    fs::create_directories(at("cap"));
+    session.say = [&](const std::string& line) { said_ += line + "\n"; };
+    run(import + R"({"op": "view", "name": "a", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}}
+{"op": "view", "name": "b", "camera": {"eye": [3, 1, 4], "target": [0, 0, 0], "fov": 30}}
+{"op": "export_views", "out": "{here}/cap/transforms.json", "width": 48, "height": 32}
+{"op": "render", "view": "a", "out": "{here}/cap/a.png", "width": 48, "height": 32}
+{"op": "render", "view": "b", "out": "{here}/cap/b.png", "width": 48, "height": 32})");
+    said();
+  }
+  fs::path at(const std::string& name) const { return folder_.path() / name; }
+  std::string said() { return std::exchange(said_, ""); }
+  const std::string compare_ = R"({"op": "compare_photographs", "cameras": "{here}/cap/transforms.json")";
+
+ private:
+  std::string said_;
+};
+
+TEST_F(ComparePhotographs, PicturesOfTheSceneItselfAgree) {
+  run(compare_ + R"(, "out": "{here}/out", "min_psnr": 45})");
+  EXPECT_FALSE(session.below_requested_psnr);
+  EXPECT_NE(said().find("mean of 2 photographs: "), std::string::npos);
+  EXPECT_EQ(read_file(at("out/photographs.csv")).substr(0, 34), "photograph,pixels,PSNR dB,SSIM,FLI");
+  for (const char* name : {"a.png", "b.png", "worst.png"}) EXPECT_TRUE(fs::exists(at("out") / name)) << name;
+  // Again over its own files.
+  run(R"({"op": "transform", "node": "ball", "translate": [1, 0, 0]})"
+      "\n" +
+      compare_ + R"(, "out": "{here}/out", "min_psnr": 45})");
+  EXPECT_TRUE(session.below_requested_psnr);
+}
+
+TEST_F(ComparePhotographs, KeepsFilesOfOthersAndTheCapture) {
+  expect_error(compare_ + R"(, "out": "{here}/cap"})", "a file of the capture");
+  fs::create_directories(at("mine"));
+  write_text(at("mine/photographs.csv"), "my table");
+  expect_error(compare_ + R"(, "out": "{here}/mine"})", "is not a table of this comparison");
+  EXPECT_EQ(read_file(at("mine/photographs.csv")), "my table");
+  fs::remove(at("cap/b.png"));
+  run(compare_ + "}");
+  EXPECT_NE(said().find("1 of 2 photographs are missing, the first is \"b.png\""), std::string::npos);
+  fs::remove(at("cap/a.png"));
+  expect_error(compare_ + "}", "none of its photographs exists");
+}
+
+}  // namespace
+}  // namespace rebake::test
