@@ -160,8 +160,11 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
                             options.psnr_db));
     session.below_requested_psnr = session.below_requested_psnr || action.psnr.has_value();
   }
-  if (!action.report.empty())
+  if (!action.report.empty()) {
+    check_report_path(action.report);  // once more: it may have appeared since
     write_file_atomically(action.report, to_json(report).dump(2) + "\n", session.document.sources());
+    session.outputs.push_back(action.report);
+  }
   session.say(fmt::format("exported {} as a plain folder", action.out));
 }
 

@@ -24,8 +24,7 @@ bool wrote(const std::filesystem::path& path) {
   return root.is_object() && root.value("software", nlohmann::json()) == camera_software;
 }
 
-// Cameras in a file are poses that nobody may be able to make again: only files that this action wrote are replaced,
-// and those of earlier versions, which did not name the program, if they hold the same views.
+// Cameras in a file are poses that nobody may be able to make again: only files that this action wrote are replaced.
 void refuse_replacing_cameras(const std::filesystem::path& path, const std::vector<std::string>& names) {
   std::error_code error;
   if (!std::filesystem::exists(path, error) ||
@@ -48,9 +47,8 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
   const bool same = std::all_of(cameras.begin(), cameras.end(), [&](const PhotoCamera& camera) {
     return std::find(names.begin(), names.end(), std::filesystem::path(camera.name).stem().string()) != names.end();
   });
-  if (same) return;
   if (!own) refuse("has cameras that Rebake did not write");
-  if (!capture_files(path, cameras).empty()) refuse("has the cameras of photographs beside it");
+  if (!same && !capture_files(path, cameras).empty()) refuse("has the cameras of photographs beside it");
 }
 
 }  // namespace

@@ -187,6 +187,7 @@ class Film {
     if (*status != 0)
       throw Error(fmt::format("ffmpeg failed with exit status {}; no video was written. Its pictures are in {}",
                               *status, pictures.string()));
+    check_replaces_video();  // once more: it may have appeared since
     write_file_atomically(action_.out, read_file(partial.file), sources_);
   }
 

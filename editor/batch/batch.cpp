@@ -87,7 +87,7 @@ void set_quality_message(BatchResult& result, bool below_requested_psnr) {
 int threads_of_each(int jobs) { return std::max(1, tbb::this_task_arena::max_concurrency() / jobs); }
 
 pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& log, const fs::path& files_list,
-            const fs::path& sources) {
+            const fs::path& sources, const std::string& script_content) {
   std::vector<std::string> words{options.program,
                                  "run",
                                  options.script,
@@ -99,6 +99,8 @@ pid_t start(const BatchOptions& options, const fs::path& scene, const fs::path& 
                                  files_list,
                                  "--protect",
                                  sources,
+                                 "--script-content",
+                                 script_content,
                                  "--threads",
                                  std::to_string(threads_of_each(options.jobs)),
                                  "--parent",
@@ -434,7 +436,8 @@ class BatchRun {
       fs::remove(mark);
       // Remove these names first: if they are links, their targets must not be overwritten.
       for (const char* ending : {".log", ".files"}) fs::remove(state_file(result, ending));
-      running_.add(start(options_, scenes_[k], state_file(result, ".log"), state_file(result, ".files"), sources_),
+      running_.add(start(options_, scenes_[k], state_file(result, ".log"), state_file(result, ".files"), sources_,
+                         hash_text(script_)),
                    {k, key, inputs, Clock::now(), std::move(lock)});
       return true;
     } catch (const FileError& why) {

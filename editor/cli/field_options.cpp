@@ -24,6 +24,7 @@ std::string hint_of(const FieldInfo& field) {
   if (field.type.kind == FieldKind::number) words = "NUMBER";
   if (field.type.kind == FieldKind::text) words = "TEXT";
   if (field.type.kind == FieldKind::nodes) words = "NODE...";
+  if (field.type.kind == FieldKind::names) words = "NAME...";
   if (field.type.kind == FieldKind::other) words = field.type.words;
   const nlohmann::json initial = field.initial.empty() ? nlohmann::json() : nlohmann::json::parse(field.initial);
   if (initial.is_null() || initial == "") return words;
@@ -58,7 +59,7 @@ void FieldOptions::add_to(SubcommandDescription& command, const std::vector<Fiel
     const std::string name = option_name(field.name);
     if (value.kind == FieldKind::flag) {
       command.flag(name, value.set, field.help);
-    } else if (value.kind == FieldKind::nodes) {
+    } else if (value.kind == FieldKind::nodes || value.kind == FieldKind::names) {
       command.option(name, value.list, field.help, hint_of(field));
     } else {
       auto option = command.option(name, value.text, field.help, hint_of(field));

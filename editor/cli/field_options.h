@@ -26,7 +26,7 @@ class FieldOptions {
   struct Value {
     FieldKind kind = FieldKind::other;
     std::string text;               ///< as given; empty: not given
-    std::vector<std::string> list;  ///< as given, for FieldKind::nodes
+    std::vector<std::string> list;  ///< as given, for FieldKind::nodes and names
     bool set = false;               ///< for FieldKind::flag
   };
   std::map<std::string, Value> values_;

@@ -91,12 +91,17 @@ void recover(const Recovery& options) {
   if (undone > 0)
     print_message(fmt::format(
         "note: {} undone edits are not part of the project; the journal still holds them, so it stays", undone));
+  if (recovered.skipped_undone > 0)
+    print_message(
+        fmt::format("note: {} undone edits were left out, because a source of theirs is missing or has changed; the "
+                    "journal still holds them, so it stays",
+                    recovered.skipped_undone));
   if (recovered.header_damaged)
     print_message("note: the journal's first line is damaged; all edits after it are intact");
   if (recovered.torn) print_message("note: the last edit is lost: the program ended while it was written");
   if (recovered.lost.empty()) {
     // The project is on the disk now.
-    if (options.keep || undone > 0) return;
+    if (options.keep || undone > 0 || recovered.skipped_undone > 0) return;
     if (recovered.journal)
       recovered.journal->discard();
     else

@@ -37,18 +37,39 @@ std::string line_of(const char* what, const std::filesystem::path& path, std::ui
          '\n';
 }
 
-// One JSON line per input of the script and per file or folder that it wrote, with content hashes.
+// Content hashes by path.
+using Contents = std::map<std::filesystem::path, std::uint64_t>;
+
+// The inputs of a script that exist, with their contents.
+Contents contents_of(const std::string& script, const std::map<std::string, std::string>& variables) {
+  Contents contents;
+  for (const ScriptInput& input : script_inputs(script, variables)) {
+    try {
+      if (std::filesystem::exists(input.path)) contents[absolute_path(input.path)] = content_hash_at(input.path);
+    } catch (const std::exception&) {
+      continue;  // reading it reports the error
+    }
+  }
+  return contents;
+}
+
+// One JSON line per input of the script and per file or folder that it wrote, with content hashes. Inputs that changed
+// since the start have their content of then, so that a batch that resumes notices, unless the script wrote them.
 std::string file_list(const Session& session, const std::string& script,
-                      const std::map<std::string, std::string>& variables) {
+                      const std::map<std::string, std::string>& variables, const Contents& at_start) {
   std::set<std::filesystem::path> read;
   for (const Edit& edit : session.document.history().edits())
     if (const auto source = source_of(edit)) read.insert(absolute_path(source->path));
   for (const ScriptInput& input : script_inputs(script, variables)) read.insert(absolute_path(input.path));
   std::string lines;
-  for (const std::filesystem::path& path : read) lines += line_of("read", path, content_hash_at(path));
   std::set<std::filesystem::path> wrote;
   for (const std::vector<std::string>* const written : {&session.exports, &session.outputs})
     for (const std::string& path : *written) wrote.insert(absolute_path(path));
+  for (const std::filesystem::path& path : read) {
+    const auto before = at_start.find(path);
+    const bool is_own = before == at_start.end() || wrote.contains(path);
+    lines += line_of("read", path, is_own ? content_hash_at(path) : before->second);
+  }
   // Pipes and devices have no content to hash.
   for (const std::filesystem::path& path : wrote)
     if (std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
@@ -106,7 +127,7 @@ void protect_listed(Document& document, const std::filesystem::path& list, const
 }
 
 struct RunOptions {
-  std::string script, journal, scene, out, files, sources;
+  std::string script, journal, scene, out, files, sources, content;
   std::vector<std::string> variables;
   bool fields = false;
   int threads = 0, parent = 0;
@@ -156,16 +177,17 @@ class WrittenList {
 
 // Writes the list of --list-files.
 void write_list(const Session& session, const RunOptions& options, const std::string& script,
-                const std::map<std::string, std::string>& variables) {
+                const std::map<std::string, std::string>& variables, const Contents& at_start) {
   if (options.files.empty()) return;
   check_list(options.files);  // once more: the script may have written this file
-  write_file_atomically(options.files, file_list(session, script, variables), session.document.sources());
+  write_file_atomically(options.files, file_list(session, script, variables, at_start), session.document.sources());
 }
 
 // Runs the script, exports and lists files as the options say.
 void run_lines(Session& session, const RunOptions& options, const std::string& script,
                const std::map<std::string, std::string>& variables) {
   WrittenList list(session, options);
+  const Contents at_start = options.files.empty() ? Contents() : contents_of(script, variables);
   try {
     session.after_line = [&list] { list.update(); };
     run_script(session, script, options.script, variables);
@@ -177,7 +199,7 @@ void run_lines(Session& session, const RunOptions& options, const std::string& s
       action.out = options.out;
       run(session, action);
     }
-    write_list(session, options, script, variables);
+    write_list(session, options, script, variables, at_start);
   } catch (const Error&) {
     if (!options.journal.empty())
       session.say(fmt::format("the edits so far are in {0}; to recover them: rebake recover {0} -o FILE.rebake",
@@ -203,6 +225,8 @@ void run_with(const RunOptions& options) {
     protect_listed(session.document, options.sources, options.scene.empty() ? "" : folder_title(options.scene));
   if (!options.files.empty()) check_list(options.files);
   const std::string script = read_input(options.script);
+  if (!options.content.empty() && hash_text(content_hash(script)) != options.content)
+    throw FileError(options.script, "has changed since the batch began; run the batch again");
   session.document.protect_file(options.script, "the script of this run");
   if (!options.scene.empty()) {
     variables["name"] = folder_title(options.scene);
@@ -245,6 +269,7 @@ void describe_run(SubcommandDescription& command) {
       "list of folders and files that must not be overwritten: pairs of the scene that reads it (empty: all) "
       "and its path, each ended by a zero byte",
       "FILE");
+  command.option("--script-content", options->content, "expected hash of the script", "HASH");
   command.option("--threads", options->threads, "maximum number of threads", "N [one per core]").between(1, 4096);
   command.option("--parent", options->parent, "end when the process with this id ends", "PID");
   command.flag("--fields", options->fields, "print every command, field, unit and default as Markdown");

@@ -10,6 +10,7 @@ void describe_render(SubcommandDescription& command);
 void describe_run(SubcommandDescription& command);
 void describe_export(SubcommandDescription& command);
 void describe_publish(SubcommandDescription& command);
+void describe_refit(SubcommandDescription& command);
 void describe_repair(SubcommandDescription& command);
 void describe_batch(SubcommandDescription& command);
 void describe_recover(SubcommandDescription& command);
@@ -26,11 +27,12 @@ inline constexpr Subcommand subcommand_table[] = {
     {"run", "runs a script of edits and actions (one JSON object per line)", describe_run},
     {"export", "exports a scene as a MobileNeRF folder, or in another format", describe_export},
     {"publish", "publishes a scene as a web page", describe_publish},
+    {"refit", "fits a scene's colours to photographs", describe_refit},
     {"repair", "writes a folder that other tools have changed as other programs expect it", describe_repair},
     {"batch", "runs one script on many scenes; each is imported as the node \"scene\" and exported at the end",
      describe_batch},
     {"recover", "recovers the edits of a crashed run from its journal, as a project", describe_recover},
-    {"compare", "compares two pictures: PSNR, SSIM, largest difference", describe_compare},
+    {"compare", "compares two pictures, or a scene with photographs: PSNR, SSIM, FLIP, largest difference", describe_compare},
     {"study", "measures accuracy against time; writes a table (CSV) and a plot (SVG, PNG)", describe_study},
     {"light", "trains a model of an object's light transfer, for shading during drags", describe_light},
     {"completion", "prints shell completions or the manual page", describe_completion}};

@@ -11,9 +11,10 @@ namespace rebake {
 namespace {
 
 // Records in an import the name that its node got, because a relinked folder may have another name on replay.
-Edit with_name(const Edit& edit, const Scene& after) {
+Edit with_name(const Edit& edit, const Scene& before, const Scene& after) {
   const auto* import = edit.as<Import>();
-  if (import == nullptr || !import->as.empty()) return edit;
+  // A scene without objects adds no node.
+  if (import == nullptr || !import->as.empty() || after.roots.size() == before.roots.size()) return edit;
   Import named = *import;
   named.as = after.roots.back()->name;
   return named;
@@ -48,7 +49,7 @@ AppliedEdits apply_edits(const Scene& start, const std::vector<Edit>& edits, con
     const Scene& before = done.scenes.empty() ? start : done.scenes.back();
     done.edits.push_back(read_edit(to_json(completed(edit)), before));
     Outcome outcome = apply(before, done.edits.back(), progress);
-    done.edits.back() = with_name(done.edits.back(), outcome.scene);
+    done.edits.back() = with_name(done.edits.back(), before, outcome.scene);
     done.scenes.push_back(std::move(outcome.scene));
     done.reports.push_back(std::move(outcome.report));
   }

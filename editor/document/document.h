@@ -122,6 +122,7 @@ struct Document::Recovered {
   Document document;
   std::size_t edits = 0;                         ///< number of recovered edits, without undone ones
   bool header_damaged = false;                   ///< the first line (format version) is damaged; it contains no edit
+  std::size_t skipped_undone = 0;                ///< undone edits left out, because a source of theirs is missing
   bool torn = false;                             ///< the program ended while it wrote a last edit, which is lost
   std::vector<std::string> lost;                 ///< one line of text per lost journal line, with the reason
   std::vector<SourcesUnavailable::Source> gone;  ///< missing or changed sources of lost edits

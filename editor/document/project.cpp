@@ -102,6 +102,16 @@ std::vector<fs::path> project_sources(const fs::path& path) {
   for (const json& source : root.at("sources"))
     if (source.is_object() && source.contains("path") && source.at("path").is_string())
       sources.push_back(source_path(real_folder_of(path), source.at("path")));
+  // Masks, photographs and the like, which edits read besides.
+  for (json edit : root.value("edits", json::array())) {
+    try {
+      if (json* const source = source_field(edit); source != nullptr && source->is_string())
+        *source = source_path(real_folder_of(path), *source).string();
+      for (fs::path& file : input_files_of(edit)) sources.push_back(std::move(file));
+    } catch (const std::exception&) {
+      continue;  // opening the project reports it
+    }
+  }
   return sources;
 }
 

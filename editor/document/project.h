@@ -35,7 +35,8 @@ bool is_project_file(const std::filesystem::path& path);
 std::vector<std::string> write_project(const std::filesystem::path& path, const std::vector<History::Entry>& entries,
                                        const SourceGuard& guard, const Progress& progress = {});
 
-/// The absolute paths of a project's sources; empty if the file is no readable project.
+/// The absolute paths of a project's sources and of all files that its edits read; empty if the file is no readable
+/// project.
 std::vector<std::filesystem::path> project_sources(const std::filesystem::path& path);
 
 /// Receives each edit of a project while it is read, and the scene after it.

@@ -19,6 +19,13 @@ namespace {
 constexpr std::size_t header_bytes = 16;  // length of the checksum at the start of a file, in hexadecimal digits
 constexpr const char* extension = ".result";
 
+// Whether a name before its first dot is a key of result_key(): "KIND-<32 hexadecimal digits>".
+bool is_own_name(const std::string& stem) {
+  constexpr std::size_t digits = 32;
+  return stem.size() > digits && stem[stem.size() - digits - 1] == '-' &&
+         stem.find_first_not_of("0123456789abcdef", stem.size() - digits) == std::string::npos;
+}
+
 }  // namespace
 
 ResultStore::ResultStore(fs::path folder, std::uint64_t limit) : folder_(std::move(folder)), limit_(limit) {}
@@ -77,6 +84,8 @@ void ResultStore::evict_to_limit() const {
     std::error_code gone;
     const auto used = entry.last_write_time(gone);
     // A temporary file of a killed program: no write takes an hour.
+    const std::string name = entry.path().filename().string();
+    if (!is_own_name(name.substr(0, name.find('.')))) continue;
     if (!gone && entry.path().extension() == ".partial" &&
         fs::file_time_type::clock::now() - used > std::chrono::hours(1))
       fs::remove(entry.path(), gone);

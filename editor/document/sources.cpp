@@ -102,6 +102,20 @@ std::string source_problem(const fs::path& source, const std::string& content, c
   return at.empty() ? "has changed since it was imported" : "has another content than the imported source" + at;
 }
 
+std::vector<fs::path> input_files_of(nlohmann::json edit) {
+  std::vector<fs::path> files;
+  const std::string op = edit.value("op", "");
+  const auto types = edit_types();
+  const auto type = std::find_if(types.begin(), types.end(), [&](const EditType* one) { return op == one->op; });
+  if (type != types.end() && (*type)->input_files != nullptr) {
+    edit.erase("node");
+    files = (*type)->input_files(read_edit(edit, {}).value());
+  }
+  if (const auto mesh = edit.find("mesh"); mesh != edit.end() && mesh->is_string())
+    files.emplace_back(mesh->get<std::string>());
+  return files;
+}
+
 Edit completed(const Edit& edit) {
   if (edit.is<Import>() && edit.as<Import>()->path.empty()) throw FieldError("path", "is empty");
   const std::optional<EditSource> source = source_of(edit);

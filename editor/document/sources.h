@@ -27,6 +27,8 @@ void check_links(const SourceLinks& links, const std::vector<std::filesystem::pa
 
 /// The external input of an edit; nothing for edits that read no source.
 std::optional<EditSource> source_of(const Edit& edit);
+/// Files that an edit reads besides its source, from its JSON; its nodes need not exist. Throws Error.
+std::vector<std::filesystem::path> input_files_of(nlohmann::json edit);
 /// The field of an edit's JSON that contains the path of its source; null if it has none.
 nlohmann::json* source_field(nlohmann::json& edit);
 

@@ -53,6 +53,7 @@
   X(Merge) \
   X(Erase) \
   X(Slim) \
+  X(Refit) \
   X(CageDeform) \
   X(HandlesDeform) \
   X(Bend) \

@@ -20,6 +20,7 @@ enum class FieldKind {
   choice,
   node,
   nodes,
+  names,
   other  ///< a JSON value
 };
 /// Type of a field, as help, forms and Python show it.

@@ -396,7 +396,7 @@ FieldType Codec<FuseMethod>::type() { return type_of(fuse_method_words()); }
 FuseMethod Codec<FuseMethod>::read(const json& value, const Scene&) { return read_word(value, fuse_method_words()); }
 json Codec<FuseMethod>::write(const FuseMethod& value) { return write_word(value, fuse_method_words()); }
 
-FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::other, "list of names", "Sequence[str]", {}}; }
+FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::names, "list of names", "Sequence[str]", {}}; }
 std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
   if (!value.is_array()) throw Error("must be a list of names");
   if (value.empty()) throw Error("must contain at least one name");

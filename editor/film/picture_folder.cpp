@@ -136,11 +136,15 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
   std::error_code error;
   if (fs::exists(folder_, error)) {
     if (!fs::is_directory(folder_)) throw FileError(folder_, "is a file; name a folder, or a .mp4 or .webm file");
+    if (replaces && fs::is_symlink(folder_, error))
+      throw FileError(folder_, "is a link; remove it, or choose another name for the video");
+    if (fs::is_symlink(folder_ / record, error))
+      throw FileError(folder_ / record, "is a link; choose another folder for the film");
     lock();
     const nlohmann::json before = record_in(folder_);
     const std::vector<fs::path> pictures = film_pictures(folder_, before);
     if (before.is_object() && before.value("content", "") == content) return;
-    if (!pictures.empty() && !replaces)
+    if (!pictures.empty() && (!replaces || !before.value("video", false)))
       throw FileError(folder_,
                       "holds pictures of another film: the scene, the way or the options differ; choose another "
                       "folder, or remove this one first");
@@ -155,7 +159,9 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
   if (!lock_) lock();
   write_file_atomically(
       folder_ / record,
-      nlohmann::json{{mark, 1}, {"content", content}, {"count", count}, {"extension", extension_}}.dump(1) + "\n",
+      nlohmann::json{{mark, 1}, {"content", content}, {"count", count}, {"extension", extension_}, {"video", replaces}}
+              .dump(1) +
+          "\n",
       sources);
 }
 

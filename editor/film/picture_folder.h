@@ -20,8 +20,8 @@ std::uint64_t picture_hash(const Scene& scene, const Progress& progress = {});
 class PictureFolder {
  public:
   /// Opens or creates the folder of a film of `count` pictures. `content`: text that identifies the film. If the folder
-  /// holds pictures of another one, they are removed if `replaces`. Throws FileError if they are not, if the folder has
-  /// other files, and if another run writes to it.
+  /// holds pictures of another one, they are removed if `replaces` and they are of a video. Throws FileError if they
+  /// are not, if the folder has other files, and if another run writes to it.
   PictureFolder(std::filesystem::path folder, std::string extension, std::size_t count, const std::string& content,
                 bool replaces, const SourceGuard& sources);
   /// Removes the pictures, film.json and the folder. Throws FileError if it has other files by now.

@@ -21,6 +21,7 @@
 #include "editor/python/json_python.h"
 #include "editor/python/py_document.h"
 #include "editor/python/stub.h"
+#include "editor/python/warnings.h"
 #include "mesh_ops/base/files.h"
 #include "render/picture.h"
 
@@ -49,14 +50,6 @@ std::vector<std::string> notes_of(Session& session, const ActionStruct& action) 
   return messages_of(session, [&] { run(session, action); });
 }
 
-// Raises a Python warning for each message that is marked as a note or warning.
-void warn(const std::vector<std::string>& messages) {
-  for (const std::string& message : messages)
-    for (const std::string_view mark : {"note: ", "warning: "})
-      if (message.starts_with(mark) && PyErr_WarnEx(PyExc_UserWarning, message.substr(mark.size()).c_str(), 1) != 0)
-        throw py::error_already_set();
-}
-
 Edit edit_once(PyDocument& document, const json& line) {
   std::optional<Edit> made;
   std::vector<std::string> messages;
@@ -66,7 +59,7 @@ Edit edit_once(PyDocument& document, const json& line) {
     made = read_edit(line, session.scene());
     messages = messages_of(session, [&] { session.edit(*made); });
   });
-  warn(messages);
+  warn_of_notes(messages);
   return *made;
 }
 
@@ -222,7 +215,7 @@ void add_document_methods(py::class_<PyDocument>& type) {
           for (const std::string& warning : session.document.save(path, session.progress))
             warnings.push_back("warning: " + warning);
         });
-        warn(warnings);
+        warn_of_notes(warnings);
       },
       py::arg("path"),
       "Writes a project (.rebake), or a scene folder with all nodes. Another project with more edits is not replaced.");

@@ -10,6 +10,7 @@
 #include "editor/fields/codec.h"
 #include "editor/python/json_python.h"
 #include "editor/python/py_document.h"
+#include "editor/python/warnings.h"
 #include "mesh_ops/base/files.h"
 
 using nlohmann::json;
@@ -42,6 +43,7 @@ std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, con
   const SourceLinks links = links_from(sources);
   if (!links.empty() && !is_project_file(path)) throw FieldError("sources", "can be given for projects only");
   std::optional<Document> opened;
+  std::vector<std::string> messages;
   Import import;
   import.path = path.string();
   import.axes = Codec<Axes>::read(json(axes), {});
@@ -51,8 +53,9 @@ std::unique_ptr<PyDocument> open_document(const std::filesystem::path& path, con
       return;
     }
     opened.emplace();
-    opened->edit(import, progress);
+    for (const Report& report : opened->edits({import}, progress)) messages = report.lines;
   });
+  warn_of_notes(messages);
   auto document = std::make_unique<PyDocument>(std::move(*opened));
   document->progress = callback;
   return document;
@@ -63,17 +66,15 @@ std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journa
   const SourceLinks links = links_from(sources);
   std::optional<Document::Recovered> recovered;
   run_without_gil(callback, [&](const Progress& progress) { recovered = Document::recover(journal, links, progress); });
-  if (!recovered->document.keeps_journal() &&
-      PyErr_WarnEx(PyExc_UserWarning,
-                   (journal.string() + " is not changed, and further edits are not in a journal: call "
-                                       "keep_journal with another file, or save")
-                       .c_str(),
-                   1) != 0)
-    throw py::error_already_set();
+  if (!recovered->document.keeps_journal())
+    warn(journal.string() +
+         " is not changed, and further edits are not in a journal: call keep_journal with another file, or save");
   if (recovered->torn)
     recovered->lost.insert(recovered->lost.begin(), "the last edit, whose line in the journal is incomplete");
-  for (const std::string& lost : recovered->lost)
-    if (PyErr_WarnEx(PyExc_UserWarning, ("not recovered: " + lost).c_str(), 1) != 0) throw py::error_already_set();
+  if (recovered->skipped_undone > 0)
+    recovered->lost.push_back(fmt::format("{} undone edits, because a source of theirs is missing or has changed",
+                                          recovered->skipped_undone));
+  for (const std::string& lost : recovered->lost) warn("not recovered: " + lost);
   auto document = std::make_unique<PyDocument>(std::move(recovered->document));
   document->progress = callback;
   return document;

@@ -571,6 +571,21 @@ class Document:
         rays: maximum number of rays per unseen triangle, 16 to 1048576: starts with 1024, doubled until a doubling finds nothing more
         psnr: PSNR of texel colours in dB, 20 to 80, relative to the present ones; near-duplicate patches become one (so erasing in one erases in all) and features lose bits; 0: lossless, the remaining texels stay as they are
         """
+    def refit(self, *, path: str, format: Literal["auto", "transforms", "colmap", "poses_bounds", "nerfstudio_path", "ngp_path"] = "auto", world: Literal["y_up", "z_up"] | None = None, scale: float = 1.0, node: Node | None = None, selection: bool = False, decoder: bool = False, gain: bool = False, epochs: int = 40, content: str = "", photographs: str = "") -> None:
+        """Fits the colours of objects to photographs: features of the texels that photographs see, and decoders if wanted.
+
+        path: camera file or folder of the photographs, as for import_views
+        format: format of the camera file; auto: recognised
+        world: axis that points up in the camera file, as for import_views
+        scale: factor of the cameras' positions
+        node: only this node and its children; default: all visible, unlocked objects
+        selection: only texels of selected triangles
+        decoder: fit the decoders too; always for objects without view dependence, which then get one
+        gain: photographs have different exposures: bring each to that of the scene as it is
+        epochs: with decoder: passes over all texels
+        content: expected hash of the cameras; set when the edit is made
+        photographs: expected hash of the photographs; set when the edit is made
+        """
     def cage(self, *, moves: Sequence[dict[str, Any]], node: Node | None = None, selection: bool = False, box: Box | None = None, frame: Literal["world", "node", "bounds"] = "world", falloff: float = 0.0, lattice: Sequence[int] | None = None, wrap: float | None = None, mesh: str | dict[str, Any] | None = None, coordinates: Literal["mean_value", "green", "harmonic"] = "mean_value", resolution: int = 32) -> None:
         """Deforms triangles by a cage: moving its vertices deforms the inside; view-dependent colours rotate along.
 

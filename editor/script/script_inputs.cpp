@@ -21,12 +21,7 @@ void add_input_files(json line, std::vector<ScriptInput>& inputs) {
   for (const ActionType* action : action_types())
     if (op == action->op && action->input_files != nullptr)
       for (std::filesystem::path& file : action->input_files(line)) inputs.push_back({std::move(file), false});
-  const auto types = edit_types();
-  const auto type = std::find_if(types.begin(), types.end(), [&](const EditType* one) { return op == one->op; });
-  if (type == types.end() || (*type)->input_files == nullptr) return;
-  line.erase("node");
-  const Edit edit = read_edit(line, {});
-  for (std::filesystem::path& file : (*type)->input_files(edit.value())) inputs.push_back({std::move(file), false});
+  for (std::filesystem::path& file : input_files_of(line)) inputs.push_back({std::move(file), false});
 }
 
 }  // namespace
@@ -49,8 +44,6 @@ std::vector<ScriptInput> script_inputs(std::string_view script, const std::map<s
       if (const json* source = source_field(object); source != nullptr && source->is_string())
         inputs.push_back({source->get<std::string>(), object.contains("content")});
       add_input_files(object, inputs);
-      if (const auto mesh = object.find("mesh"); mesh != object.end() && mesh->is_string())
-        inputs.push_back({mesh->get<std::string>(), false});
       for (std::size_t k = before; k < inputs.size(); ++k)
         inputs[k].written_before = written.contains(absolute_path(inputs[k].path));
       if (const auto out = object.find("out"); out != object.end() && out->is_string())

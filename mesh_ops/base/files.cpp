@@ -129,6 +129,13 @@ bool holds_mount(const fs::path& path) {
   return false;
 }
 
+// Removing a replaced folder would remove the files of what is mounted in it.
+void refuse_mounts(const fs::path& folder) {
+  if (holds_mount(folder))
+    throw FileError(folder,
+                    "has a file system mounted in it, whose files would be lost; unmount it, or choose another folder");
+}
+
 bool is_source(const fs::path& path, const SourceGuard& guard) {
   try {
     guard.check_folder(path);
@@ -345,6 +352,7 @@ AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
   if (fs::exists(target_, error)) {
     if (!fs::is_directory(target_)) throw FileError(target_, "is a file; name a folder to write to");
     may_replace_(target_);
+    refuse_mounts(target_);
     refuse_replacing_folder(target_);
   }
   make_folders(target_.parent_path());
@@ -379,6 +387,7 @@ void AtomicFolder::write_in_pieces(const fs::path& relative, const std::function
 }
 
 void AtomicFolder::check_replaced(const fs::path& path) const {
+  refuse_mounts(path);
   try {
     may_replace_(path);
   } catch (const FileError&) {

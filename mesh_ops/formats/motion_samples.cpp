@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "mesh_ops/base/polar.h"
 #include "mesh_ops/motion/scene_at.h"
@@ -67,19 +68,43 @@ double farthest(const BakedObject& a, const BakedObject& b, double share, const 
   return result;
 }
 
-// `object` with the vertices of `split`, which has the same faces, some of whose shared corners are split.
-std::shared_ptr<const BakedObject> with_vertices_of(const BakedObject& object,
-                                                    const std::vector<const TextureSet*>& split) {
+// Vertices that corners share only if they do so in all objects of the same faces.
+struct CommonVertices {
+  Soup::Faces faces;
+  std::size_t count = 0;
+};
+CommonVertices common_vertices(const std::vector<const Soup*>& soups) {
+  const std::size_t triangles = soups.front()->triangle_count();
+  std::vector<Face> faces = soups.front()->faces();
+  std::size_t count = soups.front()->positions().size();
+  for (const Soup* soup : soups) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> known;
+    for (std::size_t f = 0; f < triangles; ++f)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto number = static_cast<std::uint32_t>(known.size());
+        faces[f][k] = known.try_emplace({faces[f][k], soup->faces()[f][k]}, number).first->second;
+      }
+    count = known.size();
+  }
+  return {std::make_shared<const std::vector<Face>>(std::move(faces)), count};
+}
+
+// `object` with these vertices per set.
+std::shared_ptr<const BakedObject> with_vertices(const BakedObject& object, const std::vector<CommonVertices>& common) {
   auto made = std::make_shared<BakedObject>(object);
   for (std::size_t s = 0; s < object.sets.size(); ++s) {
-    const Soup &from = object.sets[s].soup, &to = split[s]->soup;
-    std::vector<std::uint32_t> source(to.positions().size(), 0);
-    for (std::size_t f = 0; f < to.triangle_count(); ++f)
-      for (std::size_t k = 0; k < 3; ++k) source[to.faces()[f][k]] = from.faces()[f][k];
-    auto positions = std::make_shared<std::vector<Vec3>>(to.positions());
-    for (std::size_t v = 0; v < source.size(); ++v) (*positions)[v] = from.positions()[source[v]];
-    made->sets[s].soup = Soup(positions, to.shared_uvs(), to.shared_faces(), from.vertex_attributes().picked(source),
-                              from.face_attributes());
+    const Soup& from = object.sets[s].soup;
+    std::vector<std::uint32_t> source(common[s].count, 0);
+    for (std::size_t f = 0; f < from.triangle_count(); ++f)
+      for (std::size_t k = 0; k < 3; ++k) source[(*common[s].faces)[f][k]] = from.faces()[f][k];
+    auto positions = std::make_shared<std::vector<Vec3>>();
+    auto uvs = std::make_shared<std::vector<Vec2>>();
+    for (const std::uint32_t v : source) {
+      positions->push_back(from.positions()[v]);
+      uvs->push_back(from.uvs()[v]);
+    }
+    made->sets[s].soup =
+        Soup(positions, uvs, common[s].faces, from.vertex_attributes().picked(source), from.face_attributes());
   }
   return made;
 }
@@ -131,7 +156,8 @@ std::vector<double> bend_times(const NodeMotion& motion) {
     const std::vector<double> times = sample_times(keys, step, false);
     all.insert(all.end(), times.begin(), times.end());
     if (step)
-      for (std::size_t k = 1; k < keys.size(); ++k) all.push_back(keys[k].seconds - jump);
+      for (std::size_t k = 1; k < keys.size(); ++k)
+        if (keys[k].seconds - jump > keys[k - 1].seconds) all.push_back(keys[k].seconds - jump);
   }
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
@@ -173,18 +199,15 @@ BendPoses bend_poses(const Node& node) {
     result.deviation = std::max(result.deviation, deviation);
     ++k;
   }
-  // Bends split corners that bent and unbent triangles share, if they move: all poses get the vertices of the most
-  // split ones.
-  std::vector<const TextureSet*> split;
+  // Bends split corners that bent and unbent triangles share, each pose its own.
+  std::vector<CommonVertices> common;
   for (std::size_t s = 0; s < node.object->sets.size(); ++s) {
-    split.push_back(&node.object->sets[s]);
-    for (const auto& one : result.poses)
-      if (one->sets[s].soup.positions().size() > split.back()->soup.positions().size()) split.back() = &one->sets[s];
+    std::vector<const Soup*> soups{&node.object->sets[s].soup};
+    for (const auto& one : result.poses) soups.push_back(&one->sets[s].soup);
+    common.push_back(common_vertices(soups));
   }
-  std::vector<std::shared_ptr<const BakedObject>> poses;
-  for (const auto& one : result.poses) poses.push_back(with_vertices_of(*one, split));
-  result.rest = with_vertices_of(*node.object, split);
-  result.poses = std::move(poses);
+  for (auto& one : result.poses) one = with_vertices(*one, common);
+  result.rest = with_vertices(*node.object, common);
   return result;
 }
 

@@ -72,7 +72,10 @@ std::uint64_t content_hash_at(const fs::path& path) {
   const fs::path root = scene_root(path);
   std::error_code error;
   const bool is_folder = fs::is_directory(root, error);
-  if (is_folder && format_at(root) != nullptr) return folder_hash(path);
+  // Web pages have a scene.json, too, which is no scene.
+  if (const Format* format = is_folder ? format_at(root) : nullptr;
+      format != nullptr && (format->folder == nullptr || format->folder->is_genuine(root)))
+    return folder_hash(path);
   if (camera_format_at(path) != nullptr) return camera_hash(path);
   if (is_folder) return files_hash(root);
   const std::vector<fs::path> beside = scene_files(path);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -186,7 +187,12 @@ class GltfWriter {
   }
   // An accessor of increasing times, with their range.
   std::size_t add_times(const std::vector<double>& seconds) {
-    const std::vector<float> times(seconds.begin(), seconds.end());
+    // Times of jumps are so close that they may be the same float.
+    std::vector<float> times;
+    for (const double time : seconds)
+      times.push_back(times.empty() ? static_cast<float>(time)
+                                    : std::max(static_cast<float>(time),
+                                               std::nextafter(times.back(), std::numeric_limits<float>::infinity())));
     const std::size_t accessor = add_floats(times, times.size(), "SCALAR");
     root_["accessors"][accessor]["min"] = {times.front()};
     root_["accessors"][accessor]["max"] = {times.back()};
@@ -514,9 +520,13 @@ ExportReport write_glb(const Scene& scene, const fs::path& file, const ExportOpt
   if (options.page_side) throw FieldError("page_size", "does not apply to glTF files; leave it out");
   if (file.extension() != ".glb") throw FieldError("out", "must end in .glb, the extension of binary glTF files");
   options.sources.check_file(file);
-  if (std::error_code error; fs::exists(file, error) && fs::file_size(file, error) > 0 && !is_own(file))
-    throw FileError(file, "exists and is not a glTF file of Rebake, so it is not replaced; choose another name");
+  const auto refuse_foreign = [&] {
+    if (std::error_code error; fs::exists(file, error) && fs::file_size(file, error) > 0 && !is_own(file))
+      throw FileError(file, "exists and is not a glTF file of Rebake, so it is not replaced; choose another name");
+  };
+  refuse_foreign();
   const GltfWriter document(scene, features, options, progress);
+  refuse_foreign();  // once more: it may have appeared since
   write_file_atomically(file, document.glb(), options.sources);
   ExportReport report;
   report.notes = document.notes();

@@ -36,23 +36,53 @@ PosedScene posed_scene(const Scene& scene) {
   return posed;
 }
 
-std::optional<SceneMotion> scene_motion(const Scene& whole) {
+namespace {
+
+// Before a jump, values are sampled this much earlier.
+constexpr double jump = 1e-4;  // seconds
+
+template <class Value>
+void add_jumps(const Keyframes<Value>& keys, std::vector<double>& times) {
+  for (std::size_t k = 1; k < keys.size(); ++k)
+    if (keys[k - 1].to_next == Interpolation::step)
+      times.insert(times.end(), {std::max(keys[k - 1].seconds, keys[k].seconds - jump), keys[k].seconds});
+}
+
+std::vector<double> sample_times(const Scene& scene, double duration) {
+  // Long motions get fewer samples per second.
+  constexpr double usual_rate = 30, most_samples = 20000;
+  const double rate = std::min(usual_rate, most_samples / std::max(1.0, duration));
+  std::vector<double> times;
+  for (std::size_t k = 0; static_cast<double>(k) < duration * rate; ++k) times.push_back(static_cast<double>(k) / rate);
+  times.push_back(duration);
+  add_jumps(scene.camera_keys, times);
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.node->motion) add_jumps(placed.node->motion->place, times);
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+}  // namespace
+
+std::optional<SceneMotion> scene_motion(const Scene& whole, const std::map<NodeId, BendPoses>& poses) {
   if (!has_keyframes(whole)) return std::nullopt;
   // Bends are poses, see posed_scene().
   const Scene scene = without_bend_keys(whole);
   SceneMotion motion;
-  // Long motions get fewer samples per second.
-  constexpr double most_samples = 20000;
-  motion.rate = std::min(motion.rate, most_samples / std::max(1.0, duration(whole)));
-  motion.samples = static_cast<std::size_t>(std::ceil(duration(whole) * motion.rate)) + 1;
+  motion.times = sample_times(scene, duration(whole));
   std::map<NodeId, NodePlaces> places;
   for (const PlacedNode& placed : placed_nodes(scene)) places[placed.node->id].rest = placed.to_world;
-  for (std::size_t t = 0; t < motion.samples; ++t) {
-    const double seconds = static_cast<double>(t) / motion.rate;
+  for (const double seconds : motion.times) {
     const Scene moved = scene_at(scene, seconds);
-    for (const PlacedNode& placed : placed_nodes(moved)) places[placed.node->id].at_times.push_back(placed.to_world);
+    Box bounds = world_bounds(moved);
+    for (const PlacedNode& placed : placed_nodes(moved)) {
+      places[placed.node->id].at_times.push_back(placed.to_world);
+      if (const auto bends = poses.find(placed.node->id); bends != poses.end())
+        for (const auto& pose : bends->second.poses) bounds.extend(transformed(pose->bounds(), placed.to_world));
+    }
     if (!scene.camera_keys.empty())
-      motion.cameras.push_back(with_planes(value_at(scene.camera_keys, seconds), world_bounds(moved), 1));
+      motion.cameras.push_back(with_planes(value_at(scene.camera_keys, seconds), bounds, 1));
   }
   for (auto& [node, one] : places)
     if (std::any_of(one.at_times.begin(), one.at_times.end(),

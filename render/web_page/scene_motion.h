@@ -15,18 +15,14 @@ struct NodePlaces {
   std::vector<Affine> at_times;  ///< one per sample
 };
 
-/// Keyframes of places and of the camera, sampled at equal times from 0.
+/// Keyframes of places and of the camera, sampled 30 times per second and on both sides of jumps.
 struct SceneMotion {
-  double rate = 30;  ///< samples per second
-  std::size_t samples = 0;
+  std::vector<double> times;            ///< seconds, from 0
   std::map<NodeId, NodePlaces> places;  ///< of the nodes that move
   std::vector<Camera> cameras;          ///< one per sample, with planes; empty without keyframes of the camera
 
-  double duration() const { return static_cast<double>(samples - 1) / rate; }
+  double duration() const { return times.back(); }
 };
-
-/// Nothing without keyframes. Throws EditError for places that cannot be interpolated.
-std::optional<SceneMotion> scene_motion(const Scene& scene);
 
 /// A scene whose nodes that bend by keyframes have the vertices of their poses.
 struct PosedScene {
@@ -35,5 +31,9 @@ struct PosedScene {
 };
 /// Gives poses to visible nodes with keyframes of bends. Throws as scene_at() does.
 PosedScene posed_scene(const Scene& scene);
+
+/// Nothing without keyframes. `poses`: of posed_scene(), for the planes of the camera. Throws EditError for places that
+/// cannot be interpolated.
+std::optional<SceneMotion> scene_motion(const Scene& scene, const std::map<NodeId, BendPoses>& poses);
 
 }  // namespace rebake

@@ -79,11 +79,11 @@ WebRotation web_rotation(const Mat3& matrix) {
   return made;
 }
 
-using Values = std::vector<std::int32_t>;
+using Integers = std::vector<std::int32_t>;
 
 template <class Value>
-Values values_of(const Order& order, const Value& value) {
-  Values values;
+Integers values_of(const Order& order, const Value& value) {
+  Integers values;
   values.reserve(order.vertices.size());
   for (const std::uint32_t v : order.vertices) values.push_back(value(v));
   return values;
@@ -107,27 +107,31 @@ void add_texels(Streams& streams, const Order& order, const PreparedSurface& sur
                 }));
 }
 
-// Rotations of a soup's vertices; no rotations are identities. `pose`: number of the pose, or empty.
-void add_rotations(Streams& streams, const Order& order, const Soup& soup, const std::string& pose = "") {
-  std::array<Values, 5> streams_of_parts;
+// Rotations of a soup's vertices; no rotations are identities.
+std::vector<std::pair<std::string, Integers>> rotations_of(const Order& order, const Soup& soup) {
+  std::vector<std::pair<std::string, Integers>> parts{{"qx", {}}, {"qy", {}}, {"qz", {}}, {"qw", {}}, {"mirrored", {}}};
   for (const std::uint32_t v : order.vertices) {
     const WebRotation rotation =
         web_rotation(soup.rotations() != nullptr ? (*soup.rotations())[v].matrix() : Mat3::Identity());
-    for (std::size_t k = 0; k < 4; ++k) streams_of_parts[k].push_back(rotation.parts[k]);
-    streams_of_parts[4].push_back(rotation.mirrored);
+    for (std::size_t k = 0; k < 4; ++k) parts[k].second.push_back(rotation.parts[k]);
+    parts[4].second.push_back(rotation.mirrored);
   }
-  const char* const names[] = {"qx", "qy", "qz", "qw", "mirrored"};
-  for (std::size_t k = 0; k < 5; ++k) streams.add(names[k] + pose, streams_of_parts[k]);
+  return parts;
 }
 
 // Positions relative to an origin, on a grid.
-void add_positions(Streams& streams, const Order& order, const Soup& soup, const Vec3& origin, double step,
-                   const std::string& pose = "") {
-  const char* const names[] = {"x", "y", "z"};
+std::vector<std::pair<std::string, Integers>> positions_of(const Order& order, const Soup& soup, const Vec3& origin,
+                                                           double step) {
+  std::vector<std::pair<std::string, Integers>> parts{{"x", {}}, {"y", {}}, {"z", {}}};
   for (const int axis : {0, 1, 2})
-    streams.add(names[axis] + pose, values_of(order, [&](std::uint32_t v) {
-                  return on_grid(soup.positions()[v][axis] - origin[axis], step);
-                }));
+    parts[static_cast<std::size_t>(axis)].second =
+        values_of(order, [&](std::uint32_t v) { return on_grid(soup.positions()[v][axis] - origin[axis], step); });
+  return parts;
+}
+
+// A difference that may overflow.
+std::int32_t changed(std::int32_t now, std::int32_t before) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(now) - static_cast<std::uint32_t>(before));
 }
 
 Vec3 origin_of(const Soup& soup) { return soup.bounds().isEmpty() ? Vec3(0, 0, 0) : Vec3(soup.bounds().center()); }
@@ -157,9 +161,10 @@ WebMesh web_mesh(const PreparedSurface& surface, double step, bool rotates, cons
   const Vec3 origin = origin_of(soup);
   Streams streams(manifest["streams"]);
   streams.add("corners", order.corners);
-  add_positions(streams, order, soup, origin, step);
+  for (const auto& [name, values] : positions_of(order, soup, origin, step)) streams.add(name, values);
   add_texels(streams, order, surface);
-  if (rotates) add_rotations(streams, order, soup);
+  if (rotates)
+    for (const auto& [name, values] : rotations_of(order, soup)) streams.add(name, values);
   if (light != nullptr)
     for (const int axis : {0, 1})
       streams.add(axis == 0 ? "light_x" : "light_y", values_of(order, [&](std::uint32_t v) {
@@ -182,10 +187,19 @@ std::string web_poses(const PreparedSurface& surface, double step, bool rotates,
   const Order order = order_of(surface);
   const Vec3 origin = origin_of(surface.source.soup);
   Streams streams(manifest["streams"]);
+  // Each as its difference from the pose before.
+  std::vector<std::pair<std::string, Integers>> before;
   for (std::size_t k = 0; k < poses.size(); ++k) {
-    const std::string number = std::to_string(k);
-    add_positions(streams, order, *poses[k], origin, step, number);
-    if (rotates) add_rotations(streams, order, *poses[k], number);
+    std::vector<std::pair<std::string, Integers>> own = positions_of(order, *poses[k], origin, step);
+    if (rotates)
+      for (auto& part : rotations_of(order, *poses[k])) own.push_back(std::move(part));
+    for (std::size_t part = 0; part < own.size(); ++part) {
+      Integers changes = own[part].second;
+      if (k > 0)
+        for (std::size_t v = 0; v < changes.size(); ++v) changes[v] = changed(changes[v], before[part].second[v]);
+      streams.add(own[part].first + std::to_string(k), changes);
+    }
+    before = std::move(own);
   }
   return gzipped(streams.bytes());
 }

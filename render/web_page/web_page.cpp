@@ -163,13 +163,14 @@ class Publisher {
       frame_list_.push_back(plan_.frames[plan_.draws[k].frame]);
       frame_of_[k] = frame_list_.size() - 1;
       const Affine rest = camera_to_world_ * plan_.draws[k].to_camera;
-      const Box bounds = plan_.draws[k].set.soup.bounds();
+      const Box bounds = bounds_of(plan_.draws[k]);
       for (const Affine& place : moved->second.at_times)
         box_.extend(transformed(bounds, place * moved->second.rest.inverse() * rest));
     }
   }
 
-  // Numbers of each sample: per moving draw the rows of object to world and of world to decoder, then the camera.
+  // The times, and the numbers of each sample: per moving draw the rows of object to world and of world to decoder,
+  // then the camera.
   json motion_entry(const SceneMotion& motion) {
     std::string bytes;
     const auto put = [&](double value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
@@ -177,7 +178,8 @@ class Publisher {
       for (Eigen::Index row = 0; row < m.rows(); ++row)
         for (Eigen::Index column = 0; column < m.cols(); ++column) put(m(row, column));
     };
-    for (std::size_t t = 0; t < motion.samples; ++t) {
+    for (const double seconds : motion.times) put(seconds);
+    for (std::size_t t = 0; t < motion.times.size(); ++t) {
       for (const std::size_t k : moving_) {
         const NodePlaces& places = motion.places.at(plan_.draws[k].node);
         const Affine& place = places.at_times[t];
@@ -195,8 +197,7 @@ class Publisher {
         put(value);
     }
     return {{"file", add_file("motion.gz", gzipped(bytes))},
-            {"rate", motion.rate},
-            {"samples", motion.samples},
+            {"samples", motion.times.size()},
             {"draws", moving_},
             {"bends", bends_},
             {"camera", !motion.cameras.empty()}};
@@ -217,7 +218,7 @@ class Publisher {
     const Affine to_world = camera_to_world_ * draw.to_camera;
     Kind kind{rotates(draw), light_of(draw), is_glossy(draw)};
     kinds_[kind.name()] = kind;
-    box_.extend(transformed(draw.set.soup.bounds(), to_world));
+    box_.extend(transformed(bounds_of(draw), to_world));
     json result = {{"set", set_of(draw, number)},
                    {"frame", frame_of_[number]},
                    {"kind", kind.name()},
@@ -300,22 +301,32 @@ class Publisher {
     return sets_.size() - 1;
   }
 
-  // The poses of a set that is about to be added, if it bends.
-  void add_poses(const Draw& draw, const PreparedSurface& surface, std::size_t number) {
-    if (poses_ == nullptr) return;
-    const auto found = poses_->find(draw.node);
-    if (found == poses_->end()) return;
-    const BendPoses& bend = found->second;
+  // A draw's triangles in all poses of its node; empty if it does not bend.
+  std::vector<const Soup*> poses_of(const Draw& draw) const {
+    if (poses_ == nullptr || !poses_->contains(draw.node)) return {};
+    const BendPoses& bend = poses_->at(draw.node);
     const auto set = std::find_if(bend.rest->sets.begin(), bend.rest->sets.end(), [&](const TextureSet& one) {
       return one.soup.shared_positions() == draw.set.soup.shared_positions();
     });
     if (set == bend.rest->sets.end()) throw std::logic_error("a draw that is not of its node's poses");
     std::vector<const Soup*> soups;
-    for (const auto& pose : bend.poses) {
+    for (const auto& pose : bend.poses)
       soups.push_back(&pose->sets[static_cast<std::size_t>(set - bend.rest->sets.begin())].soup);
-      box_.extend(transformed(soups.back()->bounds(), camera_to_world_ * draw.to_camera));
-    }
-    json entry = {{"set", sets_.size()}, {"seconds", bend.seconds}};
+    return soups;
+  }
+
+  // Bounds of a draw's triangles in object space, in all poses.
+  Box bounds_of(const Draw& draw) const {
+    Box bounds = draw.set.soup.bounds();
+    for (const Soup* pose : poses_of(draw)) bounds.extend(pose->bounds());
+    return bounds;
+  }
+
+  // The poses of a set that is about to be added, if it bends.
+  void add_poses(const Draw& draw, const PreparedSurface& surface, std::size_t number) {
+    const std::vector<const Soup*> soups = poses_of(draw);
+    if (soups.empty()) return;
+    json entry = {{"set", sets_.size()}, {"seconds", poses_->at(draw.node).seconds}};
     entry["mesh"] = add_file(fmt::format("poses{}.gz", number),
                              web_poses(surface, step_of(draw), has_rotations(draw), soups, entry));
     bends_.push_back(entry);
@@ -396,7 +407,8 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
                  const std::optional<LitScene>& before) {
   WebPage page;
   const FramePlan plan = plan_of_all(scene.scene, scene.lighting);
-  const std::optional<SceneMotion> motion = scene_motion(scene.scene);
+  const std::map<NodeId, BendPoses> no_poses;
+  const std::optional<SceneMotion> motion = scene_motion(scene.scene, scene.poses != nullptr ? *scene.poses : no_poses);
   Publisher publisher(plan, options, "", page, scene.poses);
   json manifest = publisher.manifest(motion ? &*motion : nullptr, progress);
   page.triangles = publisher.triangles();
@@ -406,7 +418,7 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
   };
   say("keyframes", motion.has_value(),
       !motion ? "nothing moves"
-              : fmt::format("{} nodes{} move for {:.4g} s", motion->places.size(),
+              : fmt::format("{} nodes{} move, {:.4g} s long", motion->places.size(),
                             motion->cameras.empty() ? "" : " and the camera", motion->duration()));
   if (motion && scene.lighting.maps.size() > 0)
     say("light of moving nodes", false, "light maps stay as they are while nodes move");

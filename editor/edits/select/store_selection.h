@@ -7,6 +7,7 @@ namespace rebake {
 /// Stores the present selection of all nodes under a name, for Select::saved. Replaces a stored selection of that name.
 struct StoreSelection {
   static constexpr const char* op = "store_selection";
+  static constexpr const char* done = "Stored the selection";
   std::string name;
 };
 template <>

@@ -230,7 +230,8 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
         node.selection = nullptr;
       });
     if (lost)
-      lines.push_back(fmt::format("{}: stored selections were removed, because the order of triangles changed", name));
+      lines.push_back(
+          fmt::format("note: {}: stored selections were removed, because the order of triangles changed", name));
     if (deselected) lines.push_back(fmt::format("{}: the selection was cleared", name));
     if (count(slimmed.dropped) > 0 && (scene.light || !before.bodies.empty()))
       lines.push_back(fmt::format(
@@ -241,6 +242,7 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
 }
 
 std::string change_title(const Slim&, const SceneChange& change, const Slim*) {
+  if (change.names.empty()) return "Slimmed nothing";
   return "Slimmed " + listed(change.names) + " by " + triangles_text(change.triangles_before - change.triangles_after);
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/edits/nodes/import.h"
+#include "editor/edits/scene_change.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/fields/field_info.h"
@@ -116,7 +117,7 @@ void EditForm::draw_count(const DocumentEditor& editor) const {
   const bool there = editor.preview && editor.preview->of == editor.scene().roots;
   std::string text = "Counting...";
   if (there)
-    text = fmt::format("Would select {} triangles (currently {})", selected_in(editor.preview->scene),
+    text = fmt::format("Would select {} (currently {})", triangles_text(selected_in(editor.preview->scene)),
                        selected_in(editor.scene()));
   ImGui::TextUnformatted(text.c_str());
   announce::item("count: " + text);

@@ -25,6 +25,7 @@
 #include "editor/edits/select/shrink.h"
 #include "editor/edits/shape/delete_and_fill.h"
 #include "editor/edits/shape/delete_selected.h"
+#include "editor/edits/shape/refit.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/gui/state/navigation.h"
@@ -136,11 +137,10 @@ void show_all(EditorContext& editor) {
 
 void separate(EditorContext& editor) {
   std::vector<Edit> list;
-  for (const PlacedNode& placed : placed_nodes(editor.scene()))
-    if (placed.visible && !placed.locked && placed.node->selection && count(*placed.node->selection) > 0 &&
-        (editor.active.empty() || editor.active.contains(placed.node->id))) {
+  for (const std::optional<NodeRef>& node : editor.scope(true))
+    if (node) {
       Separate edit;
-      edit.node = NodeRef{placed.node->id};
+      edit.node = *node;
       list.emplace_back(edit);
     }
   editor.edits(list);
@@ -148,6 +148,7 @@ void separate(EditorContext& editor) {
 
 bool has_several(const EditorContext& editor) { return editor.active.size() > 1; }
 void align(EditorContext& editor) { editor.dialogs.form = Align::op; }
+void refit(EditorContext& editor) { editor.dialogs.form = Refit::op; }
 
 void group(EditorContext& editor) {
   Group edit;
@@ -283,6 +284,8 @@ const std::vector<Command>& command_table() {
        set_ground<&GroundEdit::selection>},
       {"Edit", "Align and distribute...", "", "", "Aligns or distributes the picked nodes along an axis.", has_several,
        align},
+      {"Edit", "Refit from photographs...", "", "",
+       "Fits the colours of the picked nodes, or of the selected triangles, to photographs.", has_scene, refit},
       {"Edit", "Hide", "H", "H", "Hides the picked nodes. Hidden nodes are not exported.", has_active,
        each_active<Hide>},
       {"Edit", "Show all", "Shift+H", "Alt+H", "Shows all hidden nodes.", has_scene, show_all},

@@ -60,11 +60,10 @@ bool DocumentEditor::take_news() {
   const bool other = next->scene.roots != scene().roots;
   const bool made_more =
       next->done.size() > now->done.size() && next->done.back().type().makes_nodes && next->before_last;
-  // The status bar shows the title of a new or changed last step.
-  const bool further = next->steps_done > now->steps_done;
-  if (next->steps_done > 0 &&
-      (further || (next->steps_done == now->steps_done && next->done.back().value() != now->done.back().value())))
-    status = next->steps[next->steps_done - 1].title;
+  // The status bar shows the title of the last step when it is another one.
+  const void* const last_before = now->done.empty() ? nullptr : now->done.back().value();
+  if (const void* const last = next->done.empty() ? nullptr : next->done.back().value(); last != last_before)
+    status = next->steps_done > 0 ? next->steps[next->steps_done - 1].title : "";
   now = next;
   if (other && preview && preview->of != next->scene.roots) drop_preview();
   std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });

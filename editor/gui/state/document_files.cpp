@@ -111,10 +111,14 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
           said += "; the work that was open before was moved to the trash (File, Discarded work)";
         }
         if (recovered.torn) said += "; the last edit was incomplete when the editor ended and is lost";
+        if (recovered.skipped_undone > 0)
+          said +=
+              fmt::format("; {} undone edits were left out, because a source of theirs is missing; {} still holds them",
+                          recovered.skipped_undone, journal.string());
         session.say(said);
         if (recovered.lost.empty()) {
-          // The new journal holds everything.
-          if (recovered.journal) recovered.journal->discard();
+          // Otherwise the new journal holds everything.
+          if (recovered.journal && recovered.skipped_undone == 0) recovered.journal->discard();
           return;
         }
         *problem = fmt::format("not everything could be recovered; {} was kept:", journal.string());

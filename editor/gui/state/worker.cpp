@@ -123,19 +123,19 @@ void Worker::name_steps(Snapshot& next) {
   }
   next.revised_steps = next.steps_done > 0 ? 1 : 0;
   for (std::size_t k = next.steps_done; k > 0 && groups[k - 1].replaced; --k) ++next.revised_steps;
-  std::map<const void*, std::string> titles;
+  std::map<const void*, Titled> titles;
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const StepEdits& group = groups[k];
     const void* key = group.edits.front().value();
     const auto known = titles_.find(key);
     std::string title;
-    if (known != titles_.end())
-      title = known->second;
+    if (known != titles_.end() && known->second.edits == group.edits.size())
+      title = known->second.title;
     else if (const auto scenes = history.scenes_around(group.first, group.edits.size()))
       title = title_of(group.edits, scenes->first, scenes->second, group.replaced ? &*group.replaced : nullptr);
     else
       title = title_of(group.edits, next.scene);
-    titles[key] = title;
+    titles.insert_or_assign(key, Titled{group.edits.front(), group.edits.size(), title});
     next.steps.push_back({title, group.edits.size()});
   }
   titles_ = std::move(titles);

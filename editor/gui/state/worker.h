@@ -98,7 +98,12 @@ class Worker {
   Status status_;
   std::shared_ptr<const Snapshot> snapshot_ = std::make_shared<const Snapshot>();
   std::vector<Message> messages_;
-  std::map<const void*, std::string> titles_;  ///< titles of steps, by address of their first edit's value
+  struct Titled {
+    Edit first;  ///< kept, so that its address stays its own
+    std::size_t edits;
+    std::string title;
+  };
+  std::map<const void*, Titled> titles_;  ///< of steps, by address of their first edit's value
   std::vector<std::function<void()>> finished_;
   std::thread thread_;  // declared last because it uses the other members
 };

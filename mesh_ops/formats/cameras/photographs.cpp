@@ -83,11 +83,20 @@ std::vector<fs::path> named_photographs(const fs::path& camera_file, const std::
 std::vector<fs::path> captured_files_at(const fs::path& folder, FilesOfCapture files_of) {
   std::error_code error;
   const fs::path whole = fs::weakly_canonical(folder, error);
-  std::vector<fs::path> cameras{whole, whole.parent_path(), whole.parent_path().parent_path()}, files;
+  std::vector<fs::path> cameras, files;
+  constexpr int levels = 3;
+  fs::path around = whole;
+  for (int level = 0; level < levels; ++level, around = around.parent_path())
+    for (const char* place : {"", "sparse", "sparse/0", "colmap/sparse/0"}) cameras.push_back(around / place);
+  // Further up, only files of the usual names.
+  for (int level = levels; level < 2 * levels; ++level, around = around.parent_path())
+    for (const char* name : {"transforms.json", "transforms_train.json", "sparse/0", "colmap/sparse/0"})
+      if (fs::exists(around / name, error)) cameras.push_back(around / name);
   // Also files of other names, such as transforms_train.json.
   for (const fs::path& place : std::vector(cameras))
-    for (auto entry = fs::directory_iterator(place, error); !error && entry != fs::end(entry); entry.increment(error))
-      if (entry->path().extension() == ".json") cameras.push_back(entry->path());
+    if (fs::is_directory(place, error))
+      for (auto entry = fs::directory_iterator(place, error); !error && entry != fs::end(entry); entry.increment(error))
+        if (entry->path().extension() == ".json") cameras.push_back(entry->path());
   for (const fs::path& place : cameras) {
     if (!fs::exists(place, error) || camera_format_at(place) == nullptr) continue;
     try {

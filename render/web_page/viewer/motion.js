@@ -1,12 +1,12 @@
 // @ts-check
-// Keyframes: places of draws and the camera at equal times, and poses of sets that bend, interpolated linearly.
+// Keyframes: places of draws and the camera at times, and poses of sets that bend, interpolated linearly.
 
 import {setRotation, streamsOf, unpacked} from './scene.js';
 
 /**
  * @typedef {import('./linear.js').Camera} Camera
  * @typedef {{set: number, seconds: number[], mesh: import('./scene.js').FileEntry, streams: {name: string, count: number}[]}} BendEntry
- * @typedef {{file: import('./scene.js').FileEntry, rate: number, samples: number, draws: number[], bends: BendEntry[], camera: boolean}} MotionEntry
+ * @typedef {{file: import('./scene.js').FileEntry, samples: number, draws: number[], bends: BendEntry[], camera: boolean}} MotionEntry
  */
 
 const numbersPerDraw = 21, numbersPerCamera = 13;  // 3×4 object to world and 3×3 world to decoder; see web_page.cpp
@@ -18,6 +18,12 @@ class Bend {
     this.entry = entry;
     this.step = set.step;
     this.streams = streams;
+    // Each pose is stored as its difference from the one before.
+    for (let pose = 1; pose < entry.seconds.length; ++pose)
+      for (const name of ['x', 'y', 'z', 'qx', 'qy', 'qz', 'qw', 'mirrored']) {
+        const values = streams[name + pose], before = streams[name + (pose - 1)];
+        if (values) for (let v = 0; v < values.length; ++v) values[v] += before[v];
+      }
   }
 
   /**
@@ -37,12 +43,13 @@ class Bend {
       for (let v = 0; v < a.length; ++v) positions[3 * v + axis] = (a[v] + share * (b[v] - a[v])) * this.step;
     });
     if (!rotations) return;
-    const parts = ['qx', 'qy', 'qz', 'qw'].map(pair), mirrored = this.streams['mirrored' + first];
-    for (let v = 0; v < mirrored.length; ++v) {
-      // Opposite quaternions are the same rotation.
+    const parts = ['qx', 'qy', 'qz', 'qw'].map(pair), mirrored = pair('mirrored'), nearer = share < 0.5 ? 0 : 1;
+    for (let v = 0; v < mirrored[0].length; ++v) {
+      // Nothing lies between a rotation and a reflection. Opposite quaternions are the same rotation.
+      const part = mirrored[0][v] === mirrored[1][v] ? share : nearer;
       const sign = parts.reduce((sum, [a, b]) => sum + a[v] * b[v], 0) < 0 ? -1 : 1;
-      const q = parts.map(([a, b]) => a[v] + share * (sign * b[v] - a[v]));
-      setRotation(rotations, v, q[0], q[1], q[2], q[3], mirrored[v] !== 0);
+      const q = parts.map(([a, b]) => a[v] + part * (sign * b[v] - a[v]));
+      setRotation(rotations, v, q[0], q[1], q[2], q[3], mirrored[nearer][v] !== 0);
     }
   }
 
@@ -70,13 +77,14 @@ export class Motion {
     this.bends = bends;
     this.scene = scene;
     this.entry = /** @type {MotionEntry} */ (scene.motion);
-    this.values = values;
+    this.times = values.subarray(0, this.entry.samples);
+    this.values = values.subarray(this.entry.samples);
     this.stride = numbersPerDraw * this.entry.draws.length + (this.entry.camera ? numbersPerCamera : 0);
-    if (values.length !== this.stride * this.entry.samples) throw Error(`${this.entry.file.name} is damaged: publish the scene again`);
+    if (this.values.length !== this.stride * this.entry.samples) throw Error(`${this.entry.file.name} is damaged: publish the scene again`);
   }
 
   /** Seconds. */
-  get duration() { return (this.entry.samples - 1) / this.entry.rate; }
+  get duration() { return this.times[this.times.length - 1]; }
 
   /**
    * To be called when a renderer has loaded the scene.
@@ -101,9 +109,14 @@ export class Motion {
       bend.apply(set.mesh, seconds);
       renderer.updateVertices(set);
     }
-    const at = Math.max(0, Math.min(this.entry.samples - 1, seconds * this.entry.rate));
-    const first = Math.min(Math.floor(at), Math.max(0, this.entry.samples - 2)), share = at - first;
-    const next = Math.min(first + 1, this.entry.samples - 1);
+    let first = 0, last = this.times.length - 1;
+    while (last - first > 1) {
+      const middle = (first + last) >> 1;
+      if (this.times[middle] <= seconds) first = middle;
+      else last = middle;
+    }
+    const next = last, length = this.times[next] - this.times[first];
+    const share = length > 0 ? Math.max(0, Math.min(1, (seconds - this.times[first]) / length)) : 0;
     /** @param {number} from @param {number} count */
     const numbers = (from, count) => Array.from({length: count}, (_, k) => {
       const a = this.values[first * this.stride + from + k], b = this.values[next * this.stride + from + k];
@@ -120,11 +133,11 @@ export class Motion {
   }
 }
 
-/** @param {import('./scene.js').Manifest} scene @returns {Promise<Motion | null>} */
-export async function loadMotion(scene) {
+/** @param {import('./scene.js').Manifest} scene @param {(bytes: number) => void} received @returns {Promise<Motion | null>} */
+export async function loadMotion(scene, received) {
   if (!scene.motion) return null;
-  const bytes = await unpacked(scene.motion.file, () => {});
+  const bytes = await unpacked(scene.motion.file, received);
   const bends = await Promise.all(scene.motion.bends.map(async (entry) =>
-    new Bend(entry, scene.sets[entry.set], streamsOf(await unpacked(entry.mesh, () => {}), entry))));
+    new Bend(entry, scene.sets[entry.set], streamsOf(await unpacked(entry.mesh, received), entry))));
   return new Motion(scene, new Float64Array(bytes.buffer, bytes.byteOffset, bytes.byteLength >> 3), bends);
 }

@@ -215,5 +215,6 @@ export function totalBytes(scene) {
   for (const set of scene.sets) bytes += set.mesh.bytes + set.texels.images[0].bytes + set.texels.images[1].bytes;
   for (const {light} of scene.draws)
     for (const entry of light ? [light.gain, light.offset, light.gloss?.before, light.gloss?.after, light.gloss?.suns] : []) bytes += entry?.bytes ?? 0;
+  if (scene.motion) for (const file of [scene.motion.file, ...scene.motion.bends.map(({mesh}) => mesh)]) bytes += file.bytes;
   return bytes;
 }

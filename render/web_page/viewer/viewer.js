@@ -64,8 +64,8 @@ class Viewer extends EventTarget {
     this.resize();
     this.showStored(this.scene.home);
     this.setUpTools();
-    await this.loadAll();
-    this.motion = await loadMotion(this.scene);
+    const {scene} = this;
+    await this.loadAll(async (received) => { this.motion = await loadMotion(scene, received); });
     this.motion?.prepare(this.renderer);
     this.setUpPlayer();
     element('progress').hidden = true;
@@ -99,9 +99,12 @@ class Viewer extends EventTarget {
     }
     Object.assign(this, before ? this.earlier : this.edited);
     if (this.controls && this.scene) this.controls.scene = this.scene;
-    element('player').hidden = before || !this.motion;
+    element('player').hidden = before || !this.moves;
     await this.drawnAtRest();
   }
+
+  /** Whether there is something to play. */
+  get moves() { return this.motion !== undefined && this.motion !== null && this.motion.duration > 0; }
 
   /** Whether the scene before the edits is shown. */
   get showsBefore() { return this.earlier !== undefined && this.scene === this.earlier.scene; }
@@ -112,6 +115,7 @@ class Viewer extends EventTarget {
    */
   seek(seconds) {
     if (!this.motion || !this.edited) throw Error('this page has no keyframes');
+    if (!Number.isFinite(seconds)) throw RangeError(`${seconds} is not a time in seconds`);
     this.seconds = Math.max(0, Math.min(this.motion.duration, seconds));
     const camera = this.motion.apply(this.seconds, this.edited.renderer);
     // A camera that somebody moves is theirs until the film is played again.
@@ -135,7 +139,7 @@ class Viewer extends EventTarget {
 
   setUpPlayer() {
     const {motion} = this;
-    element('player').hidden = !motion;
+    element('player').hidden = !this.moves;
     if (!motion) return;
     const time = /** @type {HTMLInputElement} */ (element('time'));
     time.max = String(motion.duration);
@@ -143,8 +147,11 @@ class Viewer extends EventTarget {
     element('play').onclick = () => this.setPlaying(!this.playing);
   }
 
-  /** Loads all sets; each appears as soon as it is there. */
-  async loadAll() {
+  /**
+   * Loads all sets; each appears as soon as it is there.
+   * @param {(received: (bytes: number) => void) => Promise<void>} [more] what else to load at last
+   */
+  async loadAll(more) {
     const {scene, renderer} = this;
     if (!scene || !renderer) return;
     const all = totalBytes(scene);
@@ -166,6 +173,7 @@ class Viewer extends EventTarget {
       await renderer.loadLightOf(k, received);
       if (light) this.changed();
     }));
+    await more?.(received);
   }
 
   /** After a lost context: everything is uploaded again. */
@@ -175,7 +183,7 @@ class Viewer extends EventTarget {
       // The scene before the edits is loaded again when it is asked for.
       Object.assign(this, this.edited);
       if (this.controls) this.controls.scene = this.scene;
-      element('player').hidden = !this.motion;
+      element('player').hidden = !this.moves;
       this.earlier = undefined;
       element('before').setAttribute('aria-pressed', 'false');
       this.renderer = new Renderer(canvas, this.scene);

@@ -174,7 +174,10 @@ TEST_F(Guards, CameraFilesOfOthersAreKept) {
           views + more + fmt::format("{{\"op\": \"export_views\", \"out\": \"{}\"}}\n", path(name).string()));
     return program("run {}/s.jsonl");
   };
-  for (const char* name : {"sprites.json", "poses.json"}) {
+  // Another program's file with pictures of the same names.
+  write("same.json", R"({"camera_angle_x": 0.7, "aabb_scale": 4, "frames": [{"file_path": "images/v.png",
+            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
+  for (const char* name : {"sprites.json", "poses.json", "same.json"}) {
     const std::string before = read_file(path(name));
     EXPECT_EQ(export_to(name, ""), 1) << name;
     EXPECT_EQ(read_file(path(name)), before);

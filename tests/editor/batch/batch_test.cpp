@@ -327,6 +327,10 @@ TEST_F(Batch, ResumeChecksPagesFilmsAndWhatTheyRead) {
   fs::remove_all(folder_.path() / "page");
   fs::remove_all(folder_.path() / "film");
   EXPECT_EQ(run()["a"], Status::done) << "results are gone";
+  std::ofstream(folder_.path() / "page/index.html", std::ios::app) << "<p>mine</p>";
+  EXPECT_EQ(run()["a"], Status::failed) << "the page was edited";
+  fs::remove_all(folder_.path() / "page");
+  EXPECT_EQ(run()["a"], Status::done);
   fs::remove(folder_.path() / "film/00000.png");
   EXPECT_EQ(run()["a"], Status::failed) << "a picture is gone";
 }

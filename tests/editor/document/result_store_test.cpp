@@ -46,22 +46,25 @@ TEST(ResultStore, IgnoresAndRemovesDamagedFiles) {
   EXPECT_FALSE(store.find("k"));
 }
 
+// A key of result_key() for a name.
+std::string key(const std::string& name) { return result_key("kind", name); }
+
 TEST(ResultStore, EvictsLeastRecentlyUsedWithinLimit) {
   const TemporaryFolder folder;
   ResultStore store(folder.path(), 300);
   const std::string block(80, 'x');  // 96 bytes on the disk
-  const auto age = [&](const std::string& key, int minutes) {
-    fs::last_write_time(folder.path() / (key + ".result"),
+  const auto age = [&](const std::string& name, int minutes) {
+    fs::last_write_time(folder.path() / (key(name) + ".result"),
                         fs::file_time_type::clock::now() - std::chrono::minutes(minutes));
   };
-  for (const char* key : {"a", "b", "c"}) store.keep(key, block);
+  for (const char* name : {"a", "b", "c"}) store.keep(key(name), block);
   age("a", 3);
   age("b", 2);
   age("c", 1);
-  EXPECT_TRUE(store.find("a"));  // used now
-  store.keep("d", block);
-  EXPECT_FALSE(store.find("b"));
-  for (const char* key : {"a", "c", "d"}) EXPECT_TRUE(store.find(key)) << key;
+  EXPECT_TRUE(store.find(key("a")));  // used now
+  store.keep(key("d"), block);
+  EXPECT_FALSE(store.find(key("b")));
+  for (const char* name : {"a", "c", "d"}) EXPECT_TRUE(store.find(key(name))) << name;
   store.keep("large", std::string(400, 'x'));
   EXPECT_EQ(files_in(folder.path()), 3U);
 }
@@ -69,12 +72,19 @@ TEST(ResultStore, EvictsLeastRecentlyUsedWithinLimit) {
 TEST(ResultStore, RemovesLeftoversOfKilledWrites) {
   const TemporaryFolder folder;
   ResultStore store(folder.path());
-  for (const char* name : {"old.result.x.partial", "new.result.x.partial"})
+  for (const std::string& name : {key("old") + ".result.x.partial", key("new") + ".result.x.partial"})
     write_file_atomically(folder.path() / name, "half", {});
-  fs::last_write_time(folder.path() / "old.result.x.partial", fs::file_time_type::clock::now() - std::chrono::hours(2));
+  fs::last_write_time(folder.path() / (key("old") + ".result.x.partial"),
+                      fs::file_time_type::clock::now() - std::chrono::hours(2));
+  // Files of others stay, also in a folder that the user chose.
+  for (const char* name : {"measure.partial", "scan.result"}) {
+    write_file_atomically(folder.path() / name, "mine", {});
+    fs::last_write_time(folder.path() / name, fs::file_time_type::clock::now() - std::chrono::hours(2));
+  }
   store.keep("k", "bytes");
-  EXPECT_FALSE(fs::exists(folder.path() / "old.result.x.partial"));
-  EXPECT_TRUE(fs::exists(folder.path() / "new.result.x.partial")) << "another process may be writing it";
+  for (const char* name : {"measure.partial", "scan.result"}) EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
+  EXPECT_FALSE(fs::exists(folder.path() / (key("old") + ".result.x.partial")));
+  EXPECT_TRUE(fs::exists(folder.path() / (key("new") + ".result.x.partial"))) << "another process may be writing it";
 }
 
 TEST(ResultStore, IgnoresUnwritableFolder) {

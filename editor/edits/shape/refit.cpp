@@ -1,0 +1,177 @@
+#include "editor/edits/shape/refit.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "editor/edits/describe_edit.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/photographs.h"
+#include "mesh_ops/formats/scene_files.h"
+#include "mesh_ops/index/index.h"
+#include "mesh_ops/refit/photograph_fit.h"
+#include "render/photograph.h"
+#include "render/picture.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<PhotoCamera> cameras_of(const Refit& edit, std::vector<std::string>& notes) {
+  std::vector<PhotoCamera> cameras = read_cameras(edit.path, edit.format.name, edit.world, notes);
+  for (PhotoCamera& camera : cameras) camera.eye *= edit.scale;
+  return cameras;
+}
+
+// The photographs that exist, with the masks that their cameras name.
+std::vector<fs::path> files_of(const Refit& edit, const std::vector<PhotoCamera>& cameras) {
+  std::vector<fs::path> files = named_photographs(edit.path, cameras);
+  const fs::path folder = capture_folder(edit.path);
+  for (const PhotoCamera& camera : cameras)
+    if (std::error_code error; !camera.mask.empty() && fs::is_regular_file(folder / camera.mask, error))
+      files.push_back(folder / camera.mask);
+  return files;
+}
+
+std::string hash_of(const std::vector<fs::path>& files) {
+  std::string all;
+  for (const fs::path& file : files)
+    all += fmt::format("{} {:016x}\n", file.filename().string(), content_hash(read_file(file)));
+  return hash_text(content_hash(all));
+}
+
+// The nodes that change, with the triangles whose texels do.
+std::vector<FitTarget> targets_of(const Scene& scene, const Refit& edit) {
+  std::vector<FitTarget> targets;
+  for (const PlacedNode& placed : selectable(scene, edit.node)) {
+    const std::size_t count_of_all = placed.node->object->triangle_count();
+    if (!edit.selection)
+      targets.push_back({placed, TriangleSet(count_of_all, 1)});
+    else if (placed.node->selection && count(*placed.node->selection) > 0)
+      targets.push_back({placed, *placed.node->selection});
+  }
+  if (targets.empty())
+    throw EditError(edit.selection ? "no triangle is selected" : "no object is visible and unlocked");
+  return targets;
+}
+
+// The photographs for the fit. `first`: how the scene looks now, for their exposures, or null.
+std::vector<FitPhotograph> read_all(const Scene& scene, const Refit& edit, const std::vector<PhotoCamera>& cameras,
+                                    Report& report, const Progress& progress) {
+  std::vector<std::string> dropped;
+  const std::vector<Camera> views = views_of(cameras, dropped);
+  const fs::path folder = capture_folder(edit.path);
+  std::vector<FitPhotograph> photographs;
+  std::optional<Renderer> renderer;
+  std::size_t missing = 0;
+  double least = 1, most = 1;
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    progress.at("reading photographs", static_cast<double>(k) / static_cast<double>(cameras.size()));
+    if (photograph_at(folder, cameras[k].name).empty()) {
+      ++missing;
+      continue;
+    }
+    Photograph photograph = read_photograph(cameras[k], views[k], folder, scene.background);
+    if (edit.gain) {
+      if (!renderer) renderer.emplace();
+      View view;
+      view.camera = with_planes(photograph.camera, world_bounds(scene),
+                                static_cast<double>(photograph.image.width) / photograph.image.height);
+      view.width = photograph.image.width;
+      view.height = photograph.image.height;
+      const Vec3 gain = exposure_gain(photograph, renderer->render(scene, view));
+      least = std::min(least, gain.mean());
+      most = std::max(most, gain.mean());
+      photograph.image = with_gain(photograph.image, gain.cwiseMax(1e-3).cwiseInverse());
+    }
+    photographs.push_back({photograph.camera, photograph.image.width, photograph.image.height,
+                           std::move(photograph.image.rgb), std::move(photograph.valid)});
+  }
+  if (photographs.empty()) throw EditError(edit.path + ": none of its photographs exists");
+  if (missing > 0)
+    report.lines.push_back(fmt::format("warning: {} of {} photographs are missing", missing, cameras.size()));
+  if (edit.gain)
+    report.lines.push_back(fmt::format("exposures of the photographs: gains {:.2f} to {:.2f}", least, most));
+  return photographs;
+}
+
+}  // namespace
+
+EditSource Refit::input() const { return {path.empty() ? fs::path() : camera_root(path, format.name), content}; }
+
+void Refit::set_input(const EditSource& source) {
+  path = source.path.string();
+  content = source.content;
+  if (!photographs.empty()) return;
+  std::vector<std::string> notes;
+  photographs = hash_of(files_of(*this, cameras_of(*this, notes)));
+}
+
+std::vector<fs::path> Refit::input_files() const {
+  std::vector<fs::path> files = camera_format_for(path, format.name).files(path);
+  std::vector<std::string> notes;
+  for (fs::path& file : files_of(*this, cameras_of(*this, notes))) files.push_back(std::move(file));
+  return files;
+}
+
+Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
+  if (edit.path.empty()) throw FieldError("path", "is empty");
+  if (!(std::isfinite(edit.scale) && edit.scale > 0)) throw FieldError("scale", "must be a number above 0");
+  if (edit.epochs < 1 || edit.epochs > 1000) throw FieldError("epochs", "must lie between 1 and 1000");
+  Report report;
+  const std::vector<PhotoCamera> cameras = cameras_of(edit, report.lines);
+  for (std::string& line : report.lines) line = fmt::format("warning: {}: {}", edit.path, line);
+  if ((!edit.content.empty() && hash_text(content_hash_at(edit.path)) != edit.content) ||
+      (!edit.photographs.empty() && hash_of(files_of(edit, cameras)) != edit.photographs))
+    throw EditError(edit.path +
+                    ": cameras or photographs have changed since they were used; restore the original files");
+  const std::vector<FitTarget> targets = targets_of(scene, edit);
+  std::vector<PlacedNode> occluders = visible_objects(scene);
+  for (const FitTarget& target : targets)
+    if (!target.placed.visible) occluders.push_back(target.placed);
+  FitOfPhotographsOptions options;
+  options.decoder = edit.decoder;
+  options.epochs = edit.epochs;
+  const FitOfPhotographs fit = fit_to_photographs(targets, rays_through(occluders),
+                                                  read_all(scene, edit, cameras, report, progress), options, progress);
+  if (fit.seen == 0) throw EditError("the photographs see none of these texels; do the cameras belong to this scene?");
+  Scene result = scene;
+  for (const FitTarget& target : targets)
+    if (const auto changed = fit.objects.find(target.placed.node->object.get()); changed != fit.objects.end())
+      result = with_changed(result, target.placed.node->id, [&](Node& node) { node.object = changed->second; });
+  report.lines.push_back(fmt::format(
+      "fitted {} texels to {} photographs: root mean square error {:.1f} of 255 before, {:.1f} after{}", fit.seen,
+      cameras.size(), 255 * fit.before, 255 * fit.after,
+      fit.unseen > 0 ? fmt::format("; {} texels are in no photograph and keep their colours", fit.unseen) : ""));
+  return {std::move(result), std::move(report)};
+}
+
+REBAKE_DESCRIBE_EDIT(
+    Refit,
+    "Fits the colours of objects to photographs: features of the texels that photographs see, and decoders if wanted.",
+    (auto& edit, auto& visit) {
+      visit("path", edit.path, Need::required, "camera file or folder of the photographs, as for import_views");
+      visit("format", edit.format, Need::optional, "format of the camera file; auto: recognised");
+      visit("world", edit.world, Need::optional, "axis that points up in the camera file, as for import_views");
+      visit("scale", edit.scale, Need::optional, "factor of the cameras' positions");
+      visit("node", edit.node, Need::optional,
+            "only this node and its children; default: all visible, unlocked objects");
+      visit("selection", edit.selection, Need::optional, "only texels of selected triangles");
+      visit("decoder", edit.decoder, Need::optional,
+            "fit the decoders too; always for objects without view dependence, which then get one");
+      visit("gain", edit.gain, Need::optional,
+            "photographs have different exposures: bring each to that of the scene as it is");
+      visit("epochs", edit.epochs, Need::optional, "with decoder: passes over all texels");
+      visit("content", edit.content, Need::optional, "expected hash of the cameras; set when the edit is made");
+      visit("photographs", edit.photographs, Need::optional,
+            "expected hash of the photographs; set when the edit is made");
+    })
+
+}  // namespace rebake
