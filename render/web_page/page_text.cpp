@@ -64,8 +64,7 @@ bool is_page_file(const std::filesystem::path& path) {
   static const std::regex data(
       "data/"
       "((before\\.)?(mesh\\d+\\.gz|feat\\d+\\.[01]\\.(png|webp)|light\\d+\\.(gain|offset|before|after|suns)\\.gz)|"
-      "motion\\.gz|view\\d+\\."
-      "png)");
+      "motion\\.gz|poses\\d+\\.gz|view\\d+\\.png)");
   const std::string name = path.generic_string();
   return name == "index.html" || name == "scene.json" || name == "before.json" || name == "poster.png" ||
          name == "viewer/viewer.css" || std::regex_match(name, data) ||

@@ -337,6 +337,8 @@ class Publisher {
     for (const auto& [known, content] : page_.files)
       if (content == bytes) return {{"name", known}, {"bytes", bytes.size()}};
     const std::string path = "data/" + prefix_ + name;
+    // Otherwise the page could not be replaced by a new one.
+    if (!is_page_file(path)) throw std::logic_error("is_page_file() does not know " + path);
     json file = {{"name", path}, {"bytes", bytes.size()}};
     page_.files[path] = std::move(bytes);
     return file;
