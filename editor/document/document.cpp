@@ -112,10 +112,7 @@ Document::Recovered Document::recover(const fs::path& path, const SourceLinks& l
   result.torn = contents.torn;
   bool skips_undone = false;
   const std::vector<JournalLine> lines = lines_to_replay(contents, links, skips_undone);
-  if (skips_undone) {
-    for (const std::string& text : contents.entries) result.skipped_undone += edits_in(json::parse(text)).size();
-    for (const JournalLine& line : lines) result.skipped_undone -= edits_in(line.entry).size();
-  }
+  if (skips_undone) result.skipped_undone = steps_done(contents).undone;
   // Replays one line: all its edits or none.
   const auto replay = [&](const json& entry) {
     const bool adjusts = entry.contains("adjust");

@@ -318,6 +318,7 @@ ActiveSteps steps_done(const Journal::Contents& contents) {
     end = step.end;
   }
   result.partial = end != done;
+  result.undone = steps.empty() ? 0 : steps.back().end - std::min(steps.back().end, done);
   return result;
 }
 

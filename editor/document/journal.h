@@ -73,6 +73,7 @@ class Journal {
 struct ActiveSteps {
   std::vector<std::size_t> lines;  ///< index into Contents::entries of each step
   bool partial = false;            ///< an undo or redo ended inside a step of several edits
+  std::size_t undone = 0;          ///< edits that could be redone
 };
 ActiveSteps steps_done(const Journal::Contents& contents);
 

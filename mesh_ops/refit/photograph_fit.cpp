@@ -358,9 +358,13 @@ FitOfPhotographs fit_to_photographs(const std::vector<FitTarget>& targets, const
   }
   FitOfPhotographs result;
   ErrorSum before, after;
-  for (const BakedObject* object : order) {
+  for (const BakedObject* const present : order) {
     progress.at("finding texels in the photographs", 0);
-    const Observations observations = observed(*object, by_object[object], observing, options.observations);
+    // Objects without view dependence get the axes of most MobileNeRF folders.
+    BakedObject with_axes = *present;
+    if (present->decoder->rule == ColorRule::diffuse) with_axes.axes = Axes::y_up;
+    const BakedObject* const object = &with_axes;
+    const Observations observations = observed(*object, by_object[present], observing, options.observations);
     std::size_t seen = 0;
     for (std::size_t t = 0; t < observations.texels.size(); ++t)
       if (observations.texels[t].chosen) ++(observations.of_texel[t].empty() ? result.unseen : seen);
@@ -374,7 +378,7 @@ FitOfPhotographs fit_to_photographs(const std::vector<FitTarget>& targets, const
     before.squares += own.squares;
     after.squares += fitted_error.squares;
     before.count += own.count;
-    result.objects[object] = fitted;
+    result.objects[present] = fitted;
   }
   if (before.count > 0) {
     result.before = std::sqrt(before.squares / static_cast<double>(before.count));

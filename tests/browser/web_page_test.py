@@ -300,7 +300,7 @@ class WebPage(unittest.TestCase):
 
     def test_camera_and_views_on_the_command_line(self):
         scene = self.scene(FICUS, *({"op": "view", "name": name, "camera": {k: CAMERA[k] for k in ("eye", "target")}} for name in "ab"))
-        page = self.publish(scene, "--views", '["b"]', "--camera", json.dumps({"eye": [0, 0, 9], "target": [0, 0, 0]}))
+        page = self.publish(scene, "--views", "b", "--camera", json.dumps({"eye": [0, 0, 9], "target": [0, 0, 0]}))
         manifest = json.loads((page / "scene.json").read_text())
         self.assertEqual([view["name"] for view in manifest["views"]], ["b"])
         self.assertEqual(manifest["home"]["eye"], [0, 0, 9])

@@ -10,6 +10,7 @@ import tempfile
 import threading
 import time
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -215,6 +216,33 @@ class Module(unittest.TestCase):
         with self.assertWarnsRegex(UserWarning, "1 points are outside the cage.*first: row 1"):
             moved = rebake.move_by_cage(points, vertices, faces, vertices + [1, 0, 0], "green")
         np.testing.assert_allclose(moved, [[1.5, 0.5, 0.5], [3, 0.5, 0.5]])
+
+    def test_what_is_dropped_is_warned_of(self):
+        self.document.select(node=self.document.nodes[0]["name"], all=True)
+        self.document.store_selection(name="s")
+        with self.assertWarnsRegex(UserWarning, "stored selection"):
+            self.document.save(self.at / "scene")
+        self.document.view(name="v", camera={"eye": [0, 0, 3], "target": [0, 0, 0]})
+        self.document.save(self.at / "other")
+        self.document.view(name="v", camera={"eye": [0, 0, 4], "target": [0, 0, 0]})
+        with self.assertWarnsRegex(UserWarning, 'not imported, because the scene has its own: the view "v"'):
+            self.document.import_(path=self.at / "other", as_="second")
+        with self.assertRaisesRegex(rebake.Error, "in small letters"):
+            self.document.save(self.at / "p.REBAKE")
+
+    def test_warnings_as_errors_do_not_undo_what_is_done(self):
+        name = self.document.nodes[0]["name"]
+        self.document.hide(node=name)
+        seen, before = [], len(self.document.edits())
+        hook, sys.unraisablehook = sys.unraisablehook, lambda what: seen.append(what.exc_value)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                self.document.transform(node=name, translate=[1, 0, 0])
+        finally:
+            sys.unraisablehook = hook
+        self.assertIn("is hidden", str(seen[0]))
+        self.assertEqual(len(self.document.edits()), before + 1)
 
     def test_an_opened_scene_keeps_its_background(self):
         self.document.background(color=[1, 0, 0])

@@ -9,9 +9,11 @@
 
 #include "editor/document/document.h"
 #include "editor/document/project.h"
+#include "editor/edits/nodes/view.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/formats.h"
 #include "tests/support/edits.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/power_loss.h"
@@ -230,6 +232,55 @@ TEST_F(Recovery, JournalBegunAfterUndoRecoversRedoneEdits) {
   EXPECT_EQ(recovered.document.scene().background, last.color);
 }
 
+// Undone steps that could be redone are said to be left out.
+TEST_F(Recovery, CountsUndoneStepsThatCannotBeRecovered) {
+  export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/second"), {});
+  {
+    Document document;
+    document.keep_journal(path("journal"));
+    work(document, 2);
+    Import second;
+    second.path = path("sources/second").string();
+    document.edit(second);
+    ASSERT_TRUE(document.undo(2));
+  }
+  EXPECT_EQ(Document::recover(path("journal")).skipped_undone, 0U);
+  fs::rename(path("sources/second"), path("elsewhere"));
+  const Document::Recovered recovered = Document::recover(path("journal"));
+  EXPECT_TRUE(recovered.lost.empty());
+  EXPECT_EQ(recovered.edits, 2U);
+  EXPECT_EQ(recovered.skipped_undone, 2U);
+}
+
+// An import that adds no node gets no name, which would be that of another node.
+TEST_F(Recovery, ScenesWithoutObjectsAreImportedAgain) {
+  {
+    Document empty;
+    StoreView view;
+    view.name = "v";
+    view.camera = Camera{};
+    empty.edit(view);
+    format_named("rebake").write(empty.scene(), path("empty"), {}, {});
+  }
+  for (const bool first : {true, false}) {
+    Document document;
+    document.keep_journal(path(first ? "j1" : "j2"));
+    if (!first) work(document, 0);
+    Import import;
+    import.path = path("empty").string();
+    document.edit(import);
+    Background edit;
+    edit.color = Vec3(1, 0, 0);
+    document.edit(edit);
+    EXPECT_TRUE(document.scene().views.contains("v"));
+    document.save(path(first ? "p1.rebake" : "p2.rebake"));
+    EXPECT_EQ(Document::open(path(first ? "p1.rebake" : "p2.rebake")).scene().background, Vec3(1, 0, 0));
+    const std::size_t edits = document.history().undo_count();
+    document = Document();
+    EXPECT_EQ(Document::recover(path(first ? "j1" : "j2")).edits, edits);
+  }
+}
+
 TEST_F(Recovery, UndoneImportNeedsNoSource) {
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/wrong"), {});
   const auto background = [](Document& document, double blue) {
@@ -259,6 +310,7 @@ TEST_F(Recovery, UndoneImportNeedsNoSource) {
     EXPECT_EQ(recovered.document.scene().background, made.background);
     EXPECT_EQ(recovered.document.scene().roots.size(), 1U);
     EXPECT_FALSE(recovered.document.keeps_journal()) << "the journal contains more edits than the history";
+    EXPECT_EQ(recovered.skipped_undone, 0U) << "new steps replaced those that were undone";
   }
   // An import that is not undone still needs its source.
   fs::rename(path("sources/ball"), path("ball"));

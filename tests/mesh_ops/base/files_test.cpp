@@ -482,6 +482,14 @@ TEST(SourceGuard, RecognisesBindMounts) {
   EXPECT_THROW(guard.check_folder(folder.path() / "data/scene"), FileError);
   EXPECT_THROW(guard.check_folder(folder.path() / "data"), FileError);
   EXPECT_THROW(guard.check_file(folder.path() / "data/scene/shape0.obj"), FileError);
+  // A folder in which something is mounted is not replaced: its files would be removed with the old folder.
+  write_text(folder.path() / "data/mine.txt", "mine");
+  const auto replace = [&] {
+    AtomicFolder out(folder.path(), {}, [](const fs::path&) {});
+    out.commit();
+  };
+  EXPECT_THROW(replace(), FileError);
+  EXPECT_TRUE(fs::exists(folder.path() / "data/mine.txt"));
   ::umount((folder.path() / "mount").c_str());
 }
 
