@@ -64,8 +64,7 @@ std::vector<double> ssim_map(const Image& a, const Image& b) {
   std::vector<double> map;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double vx = xx[i] - mx[i] * mx[i], vy = yy[i] - my[i] * my[i], cov = xy[i] - mx[i] * my[i];
-    map.push_back((2 * mx[i] * my[i] + c1) * (2 * cov + c2) /
-                  ((mx[i] * mx[i] + my[i] * my[i] + c1) * (vx + vy + c2)));
+    map.push_back((2 * mx[i] * my[i] + c1) * (2 * cov + c2) / ((mx[i] * mx[i] + my[i] * my[i] + c1) * (vx + vy + c2)));
   }
   return map;
 }

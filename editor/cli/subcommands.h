@@ -32,7 +32,8 @@ inline constexpr Subcommand subcommand_table[] = {
     {"batch", "runs one script on many scenes; each is imported as the node \"scene\" and exported at the end",
      describe_batch},
     {"recover", "recovers the edits of a crashed run from its journal, as a project", describe_recover},
-    {"compare", "compares two pictures, or a scene with photographs: PSNR, SSIM, FLIP, largest difference", describe_compare},
+    {"compare", "compares two pictures, or a scene with photographs: PSNR, SSIM, FLIP, largest difference",
+     describe_compare},
     {"study", "measures accuracy against time; writes a table (CSV) and a plot (SVG, PNG)", describe_study},
     {"light", "trains a model of an object's light transfer, for shading during drags", describe_light},
     {"completion", "prints shell completions or the manual page", describe_completion}};

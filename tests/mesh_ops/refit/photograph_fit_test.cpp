@@ -40,8 +40,7 @@ class PhotographFit : public ::testing::Test {
     for (TextureSet& set : made->sets) {
       FeatureTexture::Change change(*set.texels);
       for (int y = 0; y < set.texels->height(); ++y)
-        for (int x = 0; x < set.texels->width(); ++x)
-          change.at(x, y) = texel(x, y);  // without holes
+        for (int x = 0; x < set.texels->width(); ++x) change.at(x, y) = texel(x, y);  // without holes
       set.texels = change.finish();
     }
     return made;
