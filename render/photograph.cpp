@@ -90,7 +90,10 @@ void resample(const PhotoCamera& camera, Photograph& photograph) {
 
 void leave_out_masked(const PhotoCamera& camera, const fs::path& folder, Photograph& photograph) {
   const fs::path file = mask_files({camera}, folder, {}).front();
-  if (file.empty()) return;
+  if (file.empty()) {
+    if (!camera.mask.empty()) throw FileError(folder / camera.mask, "does not exist; the camera file names this mask");
+    return;
+  }
   const LabelImage mask = read_mask(file);
   // A mask may have another size than its photograph.
   const int width = photograph.image.width, height = photograph.image.height;
@@ -161,10 +164,20 @@ PhotographErrors errors_against(const Photograph& photograph, const Image& pictu
   return errors;
 }
 
+namespace {
+
+// Whether a channel is so bright that the sensor may have clipped it.
+bool is_clipped(const Image& image, std::size_t pixel) {
+  constexpr std::uint8_t bright = 250;
+  return std::any_of(&image.rgb[3 * pixel], &image.rgb[3 * pixel] + 3, [](std::uint8_t v) { return v >= bright; });
+}
+
+}  // namespace
+
 Vec3 exposure_gain(const Photograph& photograph, const Image& picture) {
   Vec3 products = Vec3::Zero(), squares = Vec3::Zero();
   for (std::size_t p = 0; p < photograph.valid.size(); ++p) {
-    if (photograph.valid[p] == 0) continue;
+    if (photograph.valid[p] == 0 || is_clipped(photograph.image, p) || is_clipped(picture, p)) continue;
     for (std::size_t c = 0; c < 3; ++c) {
       const double own = to_linear(picture.rgb[3 * p + c] / 255.0),
                    wanted = to_linear(photograph.image.rgb[3 * p + c] / 255.0);
@@ -176,6 +189,11 @@ Vec3 exposure_gain(const Photograph& photograph, const Image& picture) {
   for (int c = 0; c < 3; ++c)
     if (squares[c] > 0) gain[c] = products[c] / squares[c];
   return gain;
+}
+
+void leave_out_clipped(Photograph& photograph) {
+  for (std::size_t p = 0; p < photograph.valid.size(); ++p)
+    if (is_clipped(photograph.image, p)) photograph.valid[p] = 0;
 }
 
 Image with_gain(const Image& picture, const Vec3& gain) {

@@ -36,9 +36,11 @@ struct PhotographErrors {
 /// Throws Error if the sizes differ or no pixel is valid.
 PhotographErrors errors_against(const Photograph& photograph, const Image& picture);
 
-/// The gain per channel that brings a picture closest to a photograph, in linear light (least squares over valid
-/// pixels): differences of exposure and white balance. 1 where the picture is black.
+/// The gain per channel that brings a picture closest to a photograph, in linear light (least squares over valid pixels
+/// that are not clipped in either): differences of exposure and white balance. 1 if there are none.
 Vec3 exposure_gain(const Photograph& photograph, const Image& picture);
+/// Makes pixels with a clipped channel invalid: a gain does not bring their colours back.
+void leave_out_clipped(Photograph& photograph);
 /// The picture in linear light times a gain per channel.
 Image with_gain(const Image& picture, const Vec3& gain);
 

@@ -126,13 +126,16 @@ void run(Session& session, const ComparePhotographsAction& action) {
   if (action.worst < 1 || action.worst > 100) throw FieldError("worst", "must lie between 1 and 100");
   if (action.min_psnr && std::isnan(*action.min_psnr)) throw FieldError("min_psnr", "must be a number (dB)");
   const Scene& scene = session.scene();
-  std::vector<std::string> notes, dropped;
+  std::vector<std::string> notes, dropped, masked;
   const std::vector<PhotoCamera> cameras = read_cameras(action.cameras, "", {}, notes);
   const std::vector<Camera> views = views_of(cameras, dropped);
   for (const fs::path& file : ComparePhotographsAction::input_files({{"cameras", action.cameras}}))
     session.document.protect_file(file, "a file of the capture");
   for (const std::string& note : notes) session.say(fmt::format("warning: {}: {}", action.cameras, note));
-  const std::vector<std::string> names = photo_names(cameras);
+  std::vector<std::string> names = photo_names(cameras);
+  // The sheet has this name.
+  for (std::string& name : names)
+    if (name == fs::path(sheet_name).stem()) name += "-photograph";
   const SourceGuard sources = session.document.sources();
   if (!action.out.empty()) {
     std::vector<std::string> files = names;
@@ -152,6 +155,10 @@ void run(Session& session, const ComparePhotographsAction& action) {
       continue;
     }
     const Photograph photograph = read_photograph(cameras[k], views[k], folder, scene.background);
+    if (std::find(photograph.valid.begin(), photograph.valid.end(), 1) == photograph.valid.end()) {
+      masked.push_back(cameras[k].name);
+      continue;
+    }
     resampled += photograph.resampled ? 1 : 0;
     const View view =
         resolve_view(scene, photograph.camera, "", photograph.image.width, photograph.image.height, action.samples);
@@ -164,7 +171,10 @@ void run(Session& session, const ComparePhotographsAction& action) {
   if (missing > 0)
     session.say(fmt::format("warning: {} of {} photographs are missing, the first is \"{}\"", missing, cameras.size(),
                             first_missing));
-  if (rows.empty()) throw FileError(action.cameras, "none of its photographs exists");
+  if (!masked.empty())
+    session.say(fmt::format("warning: masks leave out all of {} photographs, the first is \"{}\"", masked.size(),
+                            masked.front()));
+  if (rows.empty()) throw FileError(action.cameras, "none of its photographs exists and shows something");
   if (resampled > 0)
     session.say(fmt::format("note: {} photographs were resampled without distortion and off-centre principal points",
                             resampled));

@@ -72,7 +72,7 @@ void describe_compare(SubcommandDescription& command) {
               "N [2]")
       .between(0, 255);
   command.option("--min-psnr", options->min_psnr, "minimum PSNR; exit code 3 below it", "dB");
-  command.flag("--json", options->json, "print JSON; psnr_db is null for equal pictures");
+  command.flag("--json", options->json, "print JSON, for two pictures; psnr_db is null for equal ones");
   command.option("--photos", options->photographs.cameras,
                  "compare the scene with the photographs of this camera file or capture", "CAMERAS");
   command.option("-o,--out", options->photographs.out,

@@ -579,7 +579,7 @@ class Document:
         world: axis that points up in the camera file, as for import_views
         scale: factor of the cameras' positions
         node: only this node and its children; default: all visible, unlocked objects
-        selection: only texels of selected triangles
+        selection: only texels of selected triangles; with decoder, the others are fitted to their present colours
         decoder: fit the decoders too; always for objects without view dependence, which then get one
         gain: photographs have different exposures: bring each to that of the scene as it is
         epochs: with decoder: passes over all texels

@@ -344,10 +344,13 @@ FitOfPhotographs fit_to_photographs(const std::vector<FitTarget>& targets, const
   Box box;
   for (const FitTarget& target : targets)
     box.extend(transformed(target.placed.node->object->bounds(), target.placed.to_world));
+  // Coarser photographs mix all of an object.
+  constexpr double largest_pixel = 1.0 / 16;
   std::vector<ObservingPhotograph> observing;
   for (std::size_t k = 0; k < photographs.size(); ++k) {
     progress.at("looking at photographs", static_cast<double>(k) / static_cast<double>(photographs.size()));
-    observing.emplace_back(photographs[k], occluders, box.diagonal().norm() + box.center().norm());
+    observing.emplace_back(photographs[k], occluders, box.diagonal().norm() + box.center().norm(),
+                           largest_pixel * box.diagonal().norm());
   }
   std::map<const BakedObject*, std::vector<const FitTarget*>> by_object;
   std::vector<const BakedObject*> order;

@@ -40,8 +40,9 @@ struct FitOfPhotographs {
 
 /// Fits features (and decoders) of texels to the photographs that see them. A photograph sees a texel if nothing of
 /// `occluders` lies between, and if all four pixels around the texel show the texel's surface. Texels that none sees so
-/// are fitted to pixels that show it partly. Texels that no photograph sees keep their features; with a new decoder
-/// they are fitted to their present colours. Deterministic. Throws Cancelled.
+/// are fitted to pixels that show it partly. Pixels that cover more than 1/16 of the targets' diagonal show nothing.
+/// Texels that no photograph sees keep their features; with a new decoder they are fitted to their present colours.
+/// Deterministic. Throws Cancelled.
 FitOfPhotographs fit_to_photographs(const std::vector<FitTarget>& targets, const SceneRays& occluders,
                                     const std::vector<FitPhotograph>& photographs,
                                     const FitOfPhotographsOptions& options, const Progress& progress);

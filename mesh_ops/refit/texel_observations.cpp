@@ -74,15 +74,17 @@ std::vector<ObservedTexel> observed_texels(const BakedObject& object, const Tria
   return texels;
 }
 
-ObservingPhotograph::ObservingPhotograph(const FitPhotograph& photograph, const SceneRays& occluders, double scene_size)
+ObservingPhotograph::ObservingPhotograph(const FitPhotograph& photograph, const SceneRays& occluders, double scene_size,
+                                         double largest_pixel)
     : photograph_(photograph),
       occluders_(occluders),
       to_camera_(world_to_camera(photograph.camera)),
+      largest_pixel_(largest_pixel),
       focal_(focal_of(photograph)),
       depths_(static_cast<std::size_t>(photograph.width) * static_cast<std::size_t>(photograph.height),
               std::numeric_limits<float>::infinity()) {
   const Mat3 to_world = to_camera_.transpose();
-  const double far = scene_size + (photograph.camera.eye).norm() + photograph.camera.eye.norm();
+  const double far = scene_size + 2 * photograph.camera.eye.norm();
   tbb::parallel_for(0, photograph.height, [&](int y) {
     for (int first = 0; first < photograph.width; first += 8) {
       SceneRays::Bundle rays;
@@ -114,7 +116,7 @@ Observation ObservingPhotograph::observe(const ObservedTexel& texel, const Affin
   // Normals transform by the inverse transpose.
   const Vec3 normal = (to_world.linear().inverse().transpose() * texel.normal).stableNormalized();
   const double cosine = std::abs(normal.dot(way.stableNormalized()));
-  if (!(cosine >= least_cosine)) return {};
+  if (!(cosine >= least_cosine) || !(depth / focal_ <= largest_pixel_)) return {};
   if (occluders_.blocked(photograph_.camera.eye, world)) return {};
   Observation made;
   const Vec3 in_camera = to_camera_ * normal;

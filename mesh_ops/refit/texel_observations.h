@@ -29,7 +29,9 @@ struct Observation {
 class ObservingPhotograph {
  public:
   /// `photograph` and `occluders` must outlive this object.
-  ObservingPhotograph(const FitPhotograph& photograph, const SceneRays& occluders, double scene_size);
+  /// `largest_pixel`: pixels that cover more of a surface, in world units, show nothing of it.
+  ObservingPhotograph(const FitPhotograph& photograph, const SceneRays& occluders, double scene_size,
+                      double largest_pixel);
   /// What is seen of a texel of a node; weight 0: nothing.
   Observation observe(const ObservedTexel& texel, const Affine& to_world, const Mat3& world_to_object_turn) const;
 
@@ -37,6 +39,7 @@ class ObservingPhotograph {
   const FitPhotograph& photograph_;
   const SceneRays& occluders_;
   Mat3 to_camera_;
+  double largest_pixel_;
   double focal_;               // pixels
   std::vector<float> depths_;  // along the view axis; infinite for background
 };

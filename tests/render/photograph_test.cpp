@@ -116,9 +116,25 @@ TEST_F(PhotographTest, GainsOfExposureAreFound) {
   EXPECT_GT(errors_against(photograph, with_gain(darker, gain)).psnr_db, 45);
 }
 
+// White backgrounds are white at any exposure.
+TEST_F(PhotographTest, ClippedPixelsDoNotCountForExposure) {
+  Image image = gradient(40, 30);
+  for (std::size_t k = 0; k < image.rgb.size() / 2; ++k) image.rgb[k] = 255;
+  write_picture(with_gain(image, {2, 2, 2}), folder_.path() / "a.png", {});
+  Photograph photograph = read(camera(40, 30));
+  const Vec3 gain = exposure_gain(photograph, image);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(gain[c], 2, 0.05);
+  leave_out_clipped(photograph);
+  EXPECT_EQ(photograph.valid[0], 0);
+  EXPECT_EQ(photograph.valid[20 * 40 + 5], 1);
+}
+
 TEST_F(PhotographTest, SaysWhatIsWrong) {
   EXPECT_THROW(read(camera(40, 30)), FileError) << "no file";
   write_picture(gradient(40, 30), folder_.path() / "a.png", {});
+  PhotoCamera unmasked = camera(40, 30);
+  unmasked.mask = "none.png";
+  EXPECT_THROW(read(unmasked), FileError) << "its mask is missing";
   PhotoCamera bad = camera(40, 30);
   bad.focal.x() = std::nan("");
   EXPECT_THROW(read(bad), FieldError);

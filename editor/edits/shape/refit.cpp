@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 
 #include "editor/edits/describe_edit.h"
@@ -62,7 +63,7 @@ std::vector<FitTarget> targets_of(const Scene& scene, const Refit& edit) {
   return targets;
 }
 
-// The photographs for the fit. `first`: how the scene looks now, for their exposures, or null.
+// The photographs for the fit.
 std::vector<FitPhotograph> read_all(const Scene& scene, const Refit& edit, const std::vector<PhotoCamera>& cameras,
                                     Report& report, const Progress& progress) {
   std::vector<std::string> dropped;
@@ -71,7 +72,7 @@ std::vector<FitPhotograph> read_all(const Scene& scene, const Refit& edit, const
   std::vector<FitPhotograph> photographs;
   std::optional<Renderer> renderer;
   std::size_t missing = 0;
-  double least = 1, most = 1;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     progress.at("reading photographs", static_cast<double>(k) / static_cast<double>(cameras.size()));
     if (photograph_at(folder, cameras[k].name).empty()) {
@@ -89,6 +90,8 @@ std::vector<FitPhotograph> read_all(const Scene& scene, const Refit& edit, const
       const Vec3 gain = exposure_gain(photograph, renderer->render(scene, view));
       least = std::min(least, gain.mean());
       most = std::max(most, gain.mean());
+      // Brightened or darkened, clipped colours would be wrong ones.
+      leave_out_clipped(photograph);
       photograph.image = with_gain(photograph.image, gain.cwiseMax(1e-3).cwiseInverse());
     }
     photographs.push_back({photograph.camera, photograph.image.width, photograph.image.height,
@@ -139,8 +142,8 @@ Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
   FitOfPhotographsOptions options;
   options.decoder = edit.decoder;
   options.epochs = edit.epochs;
-  const FitOfPhotographs fit = fit_to_photographs(targets, rays_through(occluders),
-                                                  read_all(scene, edit, cameras, report, progress), options, progress);
+  const std::vector<FitPhotograph> photographs = read_all(scene, edit, cameras, report, progress);
+  const FitOfPhotographs fit = fit_to_photographs(targets, rays_through(occluders), photographs, options, progress);
   if (fit.seen == 0) throw EditError("the photographs see none of these texels; do the cameras belong to this scene?");
   Scene result = scene;
   for (const FitTarget& target : targets)
@@ -148,8 +151,10 @@ Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
       result = with_changed(result, target.placed.node->id, [&](Node& node) { node.object = changed->second; });
   report.lines.push_back(fmt::format(
       "fitted {} texels to {} photographs: root mean square error {:.1f} of 255 before, {:.1f} after{}", fit.seen,
-      cameras.size(), 255 * fit.before, 255 * fit.after,
+      photographs.size(), 255 * fit.before, 255 * fit.after,
       fit.unseen > 0 ? fmt::format("; {} texels are in no photograph and keep their colours", fit.unseen) : ""));
+  if (fit.after > fit.before)
+    report.lines.emplace_back("warning: the error grew: undo this, or fit with more epochs, or without the decoder");
   return {std::move(result), std::move(report)};
 }
 
@@ -163,7 +168,8 @@ REBAKE_DESCRIBE_EDIT(
       visit("scale", edit.scale, Need::optional, "factor of the cameras' positions");
       visit("node", edit.node, Need::optional,
             "only this node and its children; default: all visible, unlocked objects");
-      visit("selection", edit.selection, Need::optional, "only texels of selected triangles");
+      visit("selection", edit.selection, Need::optional,
+            "only texels of selected triangles; with decoder, the others are fitted to their present colours");
       visit("decoder", edit.decoder, Need::optional,
             "fit the decoders too; always for objects without view dependence, which then get one");
       visit("gain", edit.gain, Need::optional,

@@ -119,6 +119,9 @@ void EditForm::draw_count(const DocumentEditor& editor) const {
   if (there)
     text = fmt::format("Would select {} (currently {})", triangles_text(selected_in(editor.preview->scene)),
                        selected_in(editor.scene()));
+  // The preview is that of earlier fields.
+  if (const std::string problem = editor.previews.problem(); !editor.previews.busy() && !problem.empty())
+    text = problem;
   ImGui::TextUnformatted(text.c_str());
   announce::item("count: " + text);
 }

@@ -56,6 +56,11 @@ bool Previews::busy() const {
   return running_ || wanted_.has_value();
 }
 
+std::string Previews::problem() const {
+  const std::lock_guard lock(mutex_);
+  return problem_;
+}
+
 std::optional<Preview> Previews::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(made_, std::nullopt);
@@ -65,14 +70,19 @@ void Previews::make(std::unique_lock<std::mutex>& lock, const std::vector<NodePt
   cancel_ = false;
   lock.unlock();
   std::optional<Preview> made;
+  std::string problem;
   try {
     made = Preview{make(Progress([](std::string_view, double) {}, &cancel_)), of};
     const std::lock_guard ready(prepare_mutex_);
     if (prepare_) prepare_(made->scene);
-  } catch (const std::exception&) {
-    // Not reported: applying the edits fails with the same error.
+  } catch (const Cancelled&) {
+    // A newer request follows.
+  } catch (const std::exception& error) {
+    // Only forms show it: applying the edits fails with the same error.
+    problem = error.what();
   }
   lock.lock();
+  problem_ = problem;
   if (made && !cancel_) made_ = std::move(made);
 }
 

@@ -41,6 +41,8 @@ class Previews {
   std::size_t requests() const;
   /// Whether a computation is running or waiting.
   bool busy() const;
+  /// Why the latest request failed; empty if it did not.
+  std::string problem() const;
   /// Returns the latest result, once.
   std::optional<Preview> take();
 
@@ -60,6 +62,7 @@ class Previews {
   std::condition_variable changed_;
   std::optional<Wanted> wanted_;  ///< the waiting request
   std::optional<Preview> made_;   ///< the latest result, until take()
+  std::string problem_;
   std::size_t requests_ = 0;
   bool running_ = false, refining_ = false, ending_ = false;  ///< refining_: `exact` of a request is running
   std::atomic<bool> cancel_ = false;

@@ -141,6 +141,11 @@ std::uint64_t camera_hash(const fs::path& path) {
     add(camera.distortion.tangential);
     text += fmt::format("\n{}\n", camera.mask.string());
   }
+  // Films follow the rate of a camera path. That of most files was not part of the hash in earlier versions.
+  constexpr double usual_rate = 24;
+  if (&camera_format_for(path, "") == &camera_format_named("nerfstudio_path"))
+    if (const auto rate = nerfstudio_path_rate(file_at(path, camera_path)); rate && *rate != usual_rate)
+      text += fmt::format("{}\n", *rate);
   return content_hash(text);
 }
 

@@ -109,6 +109,11 @@ TEST_F(PhotographFit, UnseenTexelsStay) {
     photograph.camera.target = 2 * photograph.camera.eye;  // looks away
   }
   EXPECT_EQ(fit(scene_).seen, 0U);
+  for (FitPhotograph& photograph : photographs_) {
+    photograph.camera.target = Vec3(0, 0, 0);
+    photograph.camera.eye *= 100;  // the object is a pixel
+  }
+  EXPECT_EQ(fit(scene_).seen, 0U);
   photographs_.clear();
   EXPECT_EQ(fit(scene_).seen, 0U);
 }
