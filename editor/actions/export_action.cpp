@@ -268,7 +268,7 @@ REBAKE_DESCRIBE_ACTION(
     ExportAction,
     "Exports the scene in the MobileNeRF format (as scene.json if one folder is not exact) or another format.",
     (auto& action, auto& visit) {
-      visit("out", action.out, Need::required, "folder to write");
+      visit("out", action.out, Need::required, "folder to write, or NAME.glb for glTF");
       visit("layout", action.layout, Need::optional, "layout of the output; default: as read");
       visit("format", action.format, Need::optional, written_formats_help());
       visit("plain", action.plain, Need::optional,

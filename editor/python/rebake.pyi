@@ -109,7 +109,7 @@ class Document:
     def export(self, path: str | PathLike[str], layout: Literal["split", "chunked", "unsplit"] | None = None, format: Literal["mobilenerf", "rebake", "nerf2mesh", "gltf", "gltf_features"] = "mobilenerf", plain: bool = False, width: int | Literal["auto"] | None = None, way: Literal["keep", "train", "new", "side_by_side"] | None = None, keep: str = "auto", psnr: float | None = None, seconds: float = 0.0, report: str | PathLike[str] = "", page_size: int | None = None, picture_size: int = 800, view: str = "", compress: Sequence[str] | None = None, nodes: Sequence[Node] | None = None) -> list[str]:
         """Exports the scene; returns notes about conversions and losses, and with plain the measured errors.
 
-        path: folder to write
+        path: folder to write, or NAME.glb for glTF
         layout: layout of the output; default: as read
         format: mobilenerf: for the published viewers; rebake: keeps every node; nerf2mesh: only scenes of such folders; gltf: meshes of mean colours, for modelling programs; gltf_features: as gltf, with everything that Rebake needs to read the same scene back
         plain: write one folder for any scene: if no decoder represents it exactly, or light changes colours, one is fitted

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh_ops/formats/gltf_features.h"
 #include "mesh_ops/motion/scene_at.h"
 
 namespace rebake {
@@ -65,7 +66,9 @@ std::vector<double> sample_times(const Scene& scene, double duration) {
 
 }  // namespace
 
-std::optional<SceneMotion> scene_motion(const Scene& whole, const std::map<NodeId, BendPoses>& poses) {
+std::optional<SceneMotion> scene_motion(const Scene& given, const std::map<NodeId, BendPoses>& poses) {
+  // Hidden nodes are not part of a page.
+  const Scene whole = visible_part(given);
   if (!has_keyframes(whole)) return std::nullopt;
   // Bends are poses, see posed_scene().
   const Scene scene = without_bend_keys(whole);
