@@ -1,4 +1,5 @@
 // Functions that open a scene, a project or a journal as a Document.
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 

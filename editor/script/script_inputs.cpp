@@ -16,7 +16,7 @@ namespace {
 
 // Appends the files that an action reads, and those of an edit that reads more than its source. Its node may not exist
 // yet, and has no influence on them.
-void add_input_files(json line, std::vector<ScriptInput>& inputs) {
+void add_input_files(const json& line, std::vector<ScriptInput>& inputs) {
   const std::string op = line.value("op", "");
   for (const ActionType* action : action_types())
     if (op == action->op && action->input_files != nullptr)
