@@ -31,7 +31,7 @@ constexpr const char* sheet_name = "worst.png";
 struct Row {
   std::string name;  // without extension; unique
   PhotographErrors errors;
-  Image triptych;  // photograph, picture, FLIP
+  Image triptych;  // photograph, picture, FLIP; small enough for the sheet
 };
 
 // Photograph, picture and error beside each other.
@@ -71,7 +71,6 @@ void check_output(const fs::path& folder, const std::vector<std::string>& names,
     throw FileError(table, "exists and is not a table of this comparison; choose another folder");
 }
 
-// Sides of a sheet are limited, so large pictures are halved until they fit.
 Image halved(const Image& image) {
   Image half{image.width / 2, image.height / 2, {}, {}};
   for (int y = 0; y < half.height; ++y)
@@ -85,6 +84,13 @@ Image halved(const Image& image) {
   return half;
 }
 
+// Halved until it fits on the sheet. All photographs together would not fit into memory at full size.
+Image for_sheet(Image picture) {
+  constexpr int widest = 1800;
+  while (picture.width > widest) picture = halved(picture);
+  return picture;
+}
+
 // The worst views below each other.
 Image sheet_of(std::vector<Row> rows, int count) {
   std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.errors.psnr_db < b.errors.psnr_db; });
@@ -92,12 +98,9 @@ Image sheet_of(std::vector<Row> rows, int count) {
   int width = 0, height = 0;
   std::vector<Image> pictures;
   for (Row& row : rows) {
-    Image picture = std::move(row.triptych);
-    constexpr int widest = 1800;
-    while (picture.width > widest) picture = halved(picture);
-    width = std::max(width, picture.width);
-    height = std::max(height, picture.height);
-    pictures.push_back(std::move(picture));
+    width = std::max(width, row.triptych.width);
+    height = std::max(height, row.triptych.height);
+    pictures.push_back(std::move(row.triptych));
   }
   for (Image& picture : pictures) {
     Image padded{width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(3 * width * height), 255), {}};
@@ -141,6 +144,9 @@ void run(Session& session, const ComparePhotographsAction& action) {
     std::vector<std::string> files = names;
     files.emplace_back(fs::path(sheet_name).stem().string());
     check_output(action.out, files, sources);
+    std::error_code error;
+    fs::create_directories(action.out, error);
+    if (error) throw FileError(action.out, "cannot be created: " + error.message());
   }
   const Lighting lighting = lit(scene, session.progress);
   std::vector<Row> rows;
@@ -165,7 +171,12 @@ void run(Session& session, const ComparePhotographsAction& action) {
     Image picture = session.renderer().render(scene, view, {}, &lighting);
     if (action.gain) picture = with_gain(picture, exposure_gain(photograph, picture));
     Row row{names[k], errors_against(photograph, picture), {}};
-    row.triptych = triptych_of(photograph, picture, row.errors);
+    if (!action.out.empty()) {
+      row.triptych = triptych_of(photograph, picture, row.errors);
+      write_picture(row.triptych, fs::path(action.out) / (row.name + ".png"), sources);
+      row.triptych = for_sheet(std::move(row.triptych));
+    }
+    row.errors.map = {};
     rows.push_back(std::move(row));
   }
   if (missing > 0)
@@ -189,10 +200,6 @@ void run(Session& session, const ComparePhotographsAction& action) {
   session.say(fmt::format("mean of {} photographs{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f}", rows.size(),
                           action.gain ? " after a gain per channel" : "", psnr, ssim, flip));
   if (!action.out.empty()) {
-    std::error_code error;
-    fs::create_directories(action.out, error);
-    if (error) throw FileError(action.out, "cannot be created: " + error.message());
-    for (const Row& row : rows) write_picture(row.triptych, fs::path(action.out) / (row.name + ".png"), sources);
     write_file_atomically(fs::path(action.out) / table_name, table_of(rows), sources);
     write_picture(sheet_of(std::move(rows), action.worst), fs::path(action.out) / sheet_name, sources);
     session.outputs.push_back(action.out);

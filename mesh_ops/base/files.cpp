@@ -129,7 +129,7 @@ bool holds_mount(const fs::path& path) {
   return false;
 }
 
-// Removing a replaced folder would remove the files of what is mounted in it.
+// The removal of a replaced folder would delete the files of a file system that is mounted in it.
 void refuse_mounts(const fs::path& folder) {
   if (holds_mount(folder))
     throw FileError(folder,

@@ -32,7 +32,7 @@ class ObservingPhotograph {
   /// `largest_pixel`: pixels that cover more of a surface, in world units, show nothing of it.
   ObservingPhotograph(const FitPhotograph& photograph, const SceneRays& occluders, double scene_size,
                       double largest_pixel);
-  /// What is seen of a texel of a node; weight 0: nothing.
+  /// What the photograph shows of a texel of a node; weight 0 if it does not show it.
   Observation observe(const ObservedTexel& texel, const Affine& to_world, const Mat3& world_to_object_turn) const;
 
  private:

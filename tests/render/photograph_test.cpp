@@ -50,7 +50,7 @@ TEST_F(PhotographTest, PlainOnesAreTheFileItself) {
   EXPECT_NEAR(read(twice).camera.fov_degrees, photograph.camera.fov_degrees, 1e-12);
 }
 
-// A lens whose distortion is known: the view's pixel shows what lies there in the photograph.
+// With a known distortion, each pixel of the view has the colour of the distorted place in the photograph.
 TEST_F(PhotographTest, DistortionAndCentresAreResampled) {
   const int width = 200, height = 160;
   write_picture(gradient(width, height), folder_.path() / "a.png", {});
