@@ -5,6 +5,7 @@
   X(RenderAction)             \
   X(FilmAction)               \
   X(ComparePhotographsAction) \
+  X(TrainAction)              \
   X(ExportAction) X(PublishAction) X(SaveAction) X(SaveProjectAction) X(ExportViewsAction) X(UndoAction) X(RedoAction)
 
 namespace rebake {

@@ -11,6 +11,7 @@ void describe_run(SubcommandDescription& command);
 void describe_export(SubcommandDescription& command);
 void describe_publish(SubcommandDescription& command);
 void describe_refit(SubcommandDescription& command);
+void describe_train(SubcommandDescription& command);
 void describe_repair(SubcommandDescription& command);
 void describe_batch(SubcommandDescription& command);
 void describe_recover(SubcommandDescription& command);
@@ -27,6 +28,7 @@ inline constexpr Subcommand subcommand_table[] = {
     {"run", "runs a script of edits and actions (one JSON object per line)", describe_run},
     {"export", "exports a scene as a MobileNeRF folder, or in another format", describe_export},
     {"publish", "publishes a scene as a web page", describe_publish},
+    {"train", "trains a scene from photographs with known cameras", describe_train},
     {"refit", "fits a scene's colours to photographs", describe_refit},
     {"repair", "writes a folder that other tools have changed as other programs expect it", describe_repair},
     {"batch", "runs one script on many scenes; each is imported as the node \"scene\" and exported at the end",

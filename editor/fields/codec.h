@@ -11,6 +11,8 @@
 
 namespace rebake {
 
+enum class CaptureKind;
+
 /// Kinds of fields, for forms and parsers.
 enum class FieldKind {
   flag,
@@ -70,6 +72,7 @@ REBAKE_CODEC(FormatName);
 REBAKE_CODEC(CameraFormatName);
 REBAKE_CODEC(Interpolation);
 REBAKE_CODEC(WorldUp);
+REBAKE_CODEC(CaptureKind);
 REBAKE_CODEC(FuseWidth);
 REBAKE_CODEC(FuseMethod);
 REBAKE_CODEC(std::vector<std::string>);

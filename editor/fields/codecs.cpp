@@ -11,6 +11,7 @@
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/camera_json.h"
 #include "mesh_ops/formats/formats.h"
+#include "mesh_ops/reconstruction/grid_space.h"
 
 namespace rebake {
 
@@ -111,6 +112,11 @@ const Words<Interpolation>& interpolation_words() {
   return words;
 }
 
+const Words<CaptureKind>& capture_kind_words() {
+  static const Words<CaptureKind> words{
+      {"object", CaptureKind::object}, {"forward", CaptureKind::forward}, {"unbounded", CaptureKind::unbounded}};
+  return words;
+}
 const Words<WorldUp>& world_up_words() {
   static const Words<WorldUp> words{{"y_up", WorldUp::y}, {"z_up", WorldUp::z}};
   return words;
@@ -378,6 +384,9 @@ Interpolation Codec<Interpolation>::read(const json& value, const Scene&) {
 }
 json Codec<Interpolation>::write(const Interpolation& value) { return write_word(value, interpolation_words()); }
 
+FieldType Codec<CaptureKind>::type() { return type_of(capture_kind_words()); }
+CaptureKind Codec<CaptureKind>::read(const json& value, const Scene&) { return read_word(value, capture_kind_words()); }
+json Codec<CaptureKind>::write(const CaptureKind& value) { return write_word(value, capture_kind_words()); }
 FieldType Codec<WorldUp>::type() { return type_of(world_up_words()); }
 WorldUp Codec<WorldUp>::read(const json& value, const Scene&) { return read_word(value, world_up_words()); }
 json Codec<WorldUp>::write(const WorldUp& value) { return write_word(value, world_up_words()); }

@@ -319,7 +319,7 @@ std::shared_ptr<const BakedObject> bake(const Reconstruction& trained, const Bak
   auto object = std::make_shared<BakedObject>();
   object->sets = sets_of(trained, quads, halves, texels, options.samples + 1);
   object->decoder = std::make_shared<const Decoder>(trained.decoder().to_decoder());
-  object->axes = trained.plan().kind == CaptureKind::forward ? Axes::forward : Axes::y_up;
+  object->axes = trained.axes();
   object->layout = Layout::split;
   return object;
 }

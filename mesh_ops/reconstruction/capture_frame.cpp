@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/scene/scene_light.h"
 
 namespace rebake {
 
@@ -18,20 +19,24 @@ constexpr double most_carved = 0.1;  // share of the photographs in which a voxe
 constexpr int tolerance = 6;         // of 255, between background pixels
 constexpr double least_even = 0.9;   // share of border pixels of an even background
 
+using Bytes = std::array<std::uint8_t, 3>;
+
+bool alike(const std::uint8_t* a, const Bytes& b) {
+  return std::abs(int{a[0]} - b[0]) <= tolerance && std::abs(int{a[1]} - b[1]) <= tolerance &&
+         std::abs(int{a[2]} - b[2]) <= tolerance;
+}
+
 // Foreground pixels, summed so that windows are counted in constant time.
 class Silhouette {
  public:
-  Silhouette(const FitPhotograph& photograph, const Vec3& background)
+  Silhouette(const FitPhotograph& photograph, const Bytes& background)
       : width_(photograph.width), height_(photograph.height), sums_(at(0, height_ + 1)) {
     for (int y = 0; y < height_; ++y)
       for (int x = 0; x < width_; ++x) {
         const std::size_t p =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
         // What a mask leaves out may be anything.
-        bool foreground = photograph.valid[p] == 0;
-        for (std::size_t c = 0; c < 3; ++c)
-          foreground = foreground ||
-                       std::abs(photograph.rgb[3 * p + c] - 255 * background[static_cast<Eigen::Index>(c)]) > tolerance;
+        const bool foreground = photograph.valid[p] == 0 || !alike(&photograph.rgb[3 * p], background);
         sums_[at(x + 1, y + 1)] = sums_[at(x, y + 1)] + sums_[at(x + 1, y)] - sums_[at(x, y)] + (foreground ? 1 : 0);
       }
   }
@@ -54,23 +59,28 @@ class Silhouette {
   std::vector<std::uint32_t> sums_;
 };
 
-// Share of a photograph's border pixels that have the background's colour.
-double even_share(const FitPhotograph& photograph, const Vec3& background) {
-  std::size_t all = 0, even = 0;
+// The colour of nearly all valid pixels along a photograph's border; nothing if there is none.
+std::optional<Bytes> even_border(const FitPhotograph& photograph) {
+  std::vector<Bytes> border;
   for (int y = 0; y < photograph.height; ++y)
     for (int x = 0; x < photograph.width; ++x) {
       if (y > 0 && y + 1 < photograph.height && x > 0 && x + 1 < photograph.width) continue;
       const std::size_t p =
           static_cast<std::size_t>(y) * static_cast<std::size_t>(photograph.width) + static_cast<std::size_t>(x);
-      if (photograph.valid[p] == 0) continue;
-      ++all;
-      bool same = true;
-      for (std::size_t c = 0; c < 3; ++c)
-        same =
-            same && std::abs(photograph.rgb[3 * p + c] - 255 * background[static_cast<Eigen::Index>(c)]) <= tolerance;
-      even += same ? 1 : 0;
+      if (photograph.valid[p] != 0)
+        border.push_back({photograph.rgb[3 * p], photograph.rgb[3 * p + 1], photograph.rgb[3 * p + 2]});
     }
-  return all == 0 ? 1 : static_cast<double>(even) / static_cast<double>(all);
+  if (border.empty()) return std::nullopt;
+  Bytes middle{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto half = border.begin() + static_cast<std::ptrdiff_t>(border.size() / 2);
+    std::nth_element(border.begin(), half, border.end(), [&](const Bytes& a, const Bytes& b) { return a[c] < b[c]; });
+    middle[c] = (*half)[c];
+  }
+  const auto even =
+      std::count_if(border.begin(), border.end(), [&](const Bytes& one) { return alike(one.data(), middle); });
+  if (static_cast<double>(even) < least_even * static_cast<double>(border.size())) return std::nullopt;
+  return middle;
 }
 
 struct Cube {
@@ -124,6 +134,29 @@ Box carved(const std::vector<FitPhotograph>& photographs, const std::vector<Silh
   return all;
 }
 
+// Background and exposures by the colours along the borders of the photographs.
+void find_background(const std::vector<Bytes>& borders, CaptureFrame& frame) {
+  if (!std::all_of(borders.begin(), borders.end(), [&](const Bytes& one) { return alike(one.data(), borders[0]); })) {
+    for (const Bytes& border : borders) {
+      Vec3 gain;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto at = static_cast<Eigen::Index>(c);
+        gain[at] = std::max(to_linear(border[c] / 255.0), 1e-3) / std::max(to_linear(frame.background[at]), 1e-3);
+      }
+      frame.gains.push_back(gain);
+    }
+    frame.notes.emplace_back(
+        "exposures: photographs have even backgrounds of different brightness, so each has a gain");
+    return;
+  }
+  const Vec3 color = Vec3(borders[0][0], borders[0][1], borders[0][2]) / 255;
+  if ((color - frame.background).cwiseAbs().maxCoeff() <= tolerance / 255.0) return;
+  frame.background = color;
+  frame.notes.push_back(
+      fmt::format("background: ({:.2f}, {:.2f}, {:.2f}), the colour along the borders of all photographs", color.x(),
+                  color.y(), color.z()));
+}
+
 }  // namespace
 
 CaptureFrame object_frame(const std::vector<FitPhotograph>& photographs, const Vec3& background, double margin) {
@@ -131,20 +164,24 @@ CaptureFrame object_frame(const std::vector<FitPhotograph>& photographs, const V
   Cube cube = seen_cube(photographs);
   if (!(cube.half > 0)) throw Error("all cameras are at the point that they look at");
   CaptureFrame frame;
-  double even = 1;
-  for (const FitPhotograph& one : photographs) even = std::min(even, even_share(one, background));
-  bool found = false;
-  if (even >= least_even) {
-    std::vector<Silhouette> silhouettes;
-    for (const FitPhotograph& one : photographs) silhouettes.emplace_back(one, background);
-    // The second pass is finer.
-    for (int pass = 0; pass < 2; ++pass) {
-      const Box box = carved(photographs, silhouettes, cube);
-      if (box.isEmpty()) break;
-      found = true;
-      cube = {box.center(), box.sizes().maxCoeff() / 2};
+  frame.background = background;
+  std::vector<Silhouette> silhouettes;
+  std::vector<Bytes> borders;
+  for (const FitPhotograph& one : photographs)
+    if (const auto border = even_border(one)) {
+      silhouettes.emplace_back(one, *border);
+      borders.push_back(*border);
     }
+  const bool even = silhouettes.size() == photographs.size();
+  bool found = false;
+  // The second pass is finer.
+  for (int pass = 0; even && pass < 2; ++pass) {
+    const Box box = carved(photographs, silhouettes, cube);
+    if (box.isEmpty()) break;
+    found = true;
+    cube = {box.center(), box.sizes().maxCoeff() / 2};
   }
+  if (even) find_background(borders, frame);
   cube.half /= 1 - 2 * margin;
   frame.to_unit = Eigen::Scaling(1 / cube.half) * Eigen::Translation3d(-cube.middle);
   frame.notes.push_back(fmt::format(

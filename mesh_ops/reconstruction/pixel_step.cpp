@@ -91,8 +91,9 @@ double Reconstruction::pixel_step(bool features_only) {
   SplitMix64 dice(plan_.seed * 0x9e3779b97f4a7c15U + steps_done_);
   RayBatch batch;
   std::vector<Vec3> wanted(count);
+  std::vector<TrainingViews::Pixel> pixels;
   for (Vec3& color : wanted) {
-    const TrainingViews::Pixel pixel = views_.pick(dice);
+    const TrainingViews::Pixel& pixel = pixels.emplace_back(views_.pick(dice));
     add_rays(plan_, views_, pixel, batch);
     color = views_.color(pixel);
   }
@@ -122,7 +123,7 @@ double Reconstruction::pixel_step(bool features_only) {
   std::vector<double> errors(count);
   std::vector<Vec3> slopes(means.size());
   for_pixels(means.size(), [&](std::size_t m) {
-    const Vec3 off = color_of(means[m], &decoded[3 * m], background_) - wanted[m % count];
+    const Vec3 off = off_by(color_of(means[m], &decoded[3 * m], background_), wanted[m % count], pixels[m % count]);
     if (m < count) errors[m] = off.squaredNorm() / 3;
     slopes[m] = kind_shares[m / count] * 2 * off / (3 * static_cast<double>(count));
     for (std::size_t c = 0; c < 3; ++c)

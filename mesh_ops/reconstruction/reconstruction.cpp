@@ -62,7 +62,9 @@ Reconstruction::Reconstruction(const TrainingPlan& plan, TrainingViews views, co
       offset_gradient_(grid_.offsets.size()),
       position_slopes_(cells_.size(), Vec3::Zero()),
       cell_steps_(cells_.size(), 0.999),
-      offset_steps_(grid_.offsets.size(), 0.999) {
+      offset_steps_(grid_.offsets.size(), 0.999),
+      exposures_(views_.photographs().size()),
+      gains_(views_.photographs().size(), Vec3::Ones()) {
   for (std::uint32_t cell = 0; cell < inner_.size(); ++cell) {
     const auto at = grid_.space().cell_of_number(cell);
     inner_[cell] = std::all_of(at.begin(), at.end(), [&](int i) { return i >= 1 && i <= plan.side - 2; }) ? 1 : 0;
@@ -103,6 +105,7 @@ double Reconstruction::step() {
   }
   const double error = now == TrainingStage::soft ? soft_step() : pixel_step(now == TrainingStage::features);
   ++steps_done_;
+  if (stage() == TrainingStage::soft) update_exposures();
   if (stage() != TrainingStage::features && steps_done_ % cells_update == 0) set_active();
   return error;
 }
@@ -147,9 +150,10 @@ double Reconstruction::soft_step() {
   const std::size_t count = open ? plan_.open_rays : plan_.soft_rays, most = open ? plan_.open_hits : plan_.soft_hits;
   SplitMix64 dice(plan_.seed * 0x9e3779b97f4a7c15U + steps_done_);
   RayBatch batch;
-  std::vector<Vec3> wanted(count);
+  std::vector<Vec3> wanted(count), shown_colors(count);
+  std::vector<TrainingViews::Pixel> pixels;
   for (Vec3& color : wanted) {
-    const TrainingViews::Pixel pixel = views_.pick(dice);
+    const TrainingViews::Pixel& pixel = pixels.emplace_back(views_.pick(dice));
     batch.rays.push_back(views_.ray(pixel.photograph, pixel.x + 0.5, pixel.y + 0.5));
     color = views_.color(pixel);
   }
@@ -170,7 +174,8 @@ double Reconstruction::soft_step() {
     for (std::size_t k = shown.first[r]; k < shown.first[r + 1]; ++k)
       colors[shown.hits[k] - first] = Eigen::Vector3f::Map(&shown.colors[3 * k]).cast<double>();
     const RayWeights& weights = kind.weights[r];
-    const Vec3 off = ray_color(weights, colors, background_) - wanted[r];
+    shown_colors[r] = ray_color(weights, colors, background_);
+    const Vec3 off = off_by(shown_colors[r], wanted[r], pixels[r]);
     errors[r] = off.squaredNorm() / 3;
     std::vector<double> slopes(hits);
     ray_color_slopes({kind.opacities.data() + first, hits}, weights, colors, background_,
@@ -194,9 +199,47 @@ double Reconstruction::soft_step() {
   update_geometry(batch, alpha_slopes, feature_points, shown.hits, shares, static_cast<double>(count * most), now);
   fields_.features->step(now);
   decoder_.step(now);
+  if (!open)
+    for (std::size_t r = 0; r < count; ++r)
+      exposures_.add(pixels[r].photograph, views_.raw_color(pixels[r]), shown_colors[r]);
   double error = 0;
   for (const double one : errors) error += one / static_cast<double>(count);
   return error;
+}
+
+// Gains follow the scene from the middle of stage 1 on, if there are differences.
+void Reconstruction::update_exposures() {
+  constexpr std::size_t updates = 16;
+  const std::size_t middle = (plan_.open_steps + plan_.soft_steps) / 2,
+                    period = std::max<std::size_t>(1, (plan_.soft_steps - middle) / updates);
+  if (!plan_.gains || steps_done_ < middle || (steps_done_ - middle) % period != 0) return;
+  if (steps_done_ == middle) {
+    exposure_spread_ = exposures_.spread();
+    has_gains_ = has_gains_ || exposures_.differ();
+  }
+  if (has_gains_) set_gains(exposures_.gains());
+  exposures_.fade();
+}
+
+void Reconstruction::start_with_gains(const std::vector<Vec3>& gains) {
+  has_gains_ = true;
+  set_gains(gains);
+}
+
+// The error of a pixel's colour. Clipped channels may have been brighter, which gains would make darker.
+Vec3 Reconstruction::off_by(const Vec3& shown, const Vec3& wanted, const TrainingViews::Pixel& pixel) const {
+  Vec3 off = shown - wanted;
+  if (!has_gains_) return off;
+  constexpr double bright = 0.98;
+  const Vec3 raw = views_.raw_color(pixel);
+  for (int c = 0; c < 3; ++c)
+    if (raw[c] >= bright && off[c] > 0) off[c] = 0;
+  return off;
+}
+
+void Reconstruction::set_gains(const std::vector<Vec3>& gains) {
+  gains_ = gains;
+  for (std::size_t k = 0; k < gains.size(); ++k) views_.set_gain(k, gains[k]);
 }
 
 // Adds the derivatives of the distortion loss of a ray by its opacities.
@@ -238,6 +281,9 @@ std::string Reconstruction::save() const {
   put_numbers(bytes, grid_.offsets);
   put_numbers(bytes, cells_);
   put_numbers(bytes, active_);
+  put_numbers(bytes, std::vector<double>{exposure_spread_, has_gains_ ? 1.0 : 0.0});
+  put_numbers(bytes, gains_);
+  exposures_.save(bytes);
   offset_steps_.save(bytes);
   cell_steps_.save(bytes);
   decoder_.save(bytes);
@@ -252,6 +298,11 @@ void Reconstruction::load(std::string_view bytes) {
   take_numbers(bytes, grid_.offsets);
   take_numbers(bytes, cells_);
   take_numbers(bytes, active_);
+  std::vector<double> spread(2);
+  take_numbers(bytes, spread);
+  std::vector<Vec3> gains = gains_;
+  take_numbers(bytes, gains);
+  exposures_.load(bytes);
   offset_steps_.load(bytes);
   cell_steps_.load(bytes);
   decoder_.load(bytes);
@@ -259,6 +310,9 @@ void Reconstruction::load(std::string_view bytes) {
   fields_.features->load(bytes);
   if (!bytes.empty()) throw Error("is longer than the state of this training");
   steps_done_ = done[0];
+  exposure_spread_ = spread[0];
+  has_gains_ = spread[1] != 0;
+  if (has_gains_) set_gains(gains);
   grid_.place_vertices();
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "mesh_ops/reconstruction/exposures.h"
 #include "mesh_ops/reconstruction/pixel_mean.h"
 #include "mesh_ops/reconstruction/ray_batch.h"
 #include "mesh_ops/reconstruction/trained_network.h"
@@ -41,6 +42,15 @@ class Reconstruction {
   /// Per cell: 1 if it may hold surface.
   const std::vector<std::uint8_t>& active() const { return active_; }
   const SceneFields& fields() const { return fields_; }
+  /// Axes of the directions that the decoder takes.
+  Axes axes() const { return plan_.kind == CaptureKind::forward ? Axes::forward : Axes::y_up; }
+  /// Relative standard deviation of the photographs' exposures, known from the middle of stage 1 on; 0 before.
+  double exposure_spread() const { return exposure_spread_; }
+  /// Gives each photograph a gain from the start; estimates replace it from the middle of stage 1 on.
+  void start_with_gains(const std::vector<Vec3>& gains);
+  /// Whether each photograph has a gain per channel, because exposures differ.
+  bool has_gains() const { return has_gains_; }
+  const std::vector<Vec3>& gains() const { return gains_; }
   const FeatureNetwork& decoder() const { return decoder_.network(); }
 
   /// The state between two steps. The plan and the photographs are not part of it.
@@ -59,6 +69,9 @@ class Reconstruction {
                        const std::vector<FieldPoint>& feature_points, const std::vector<std::uint32_t>& shown,
                        const std::vector<double>& shares, double slots, double rate);
   void set_active();
+  void update_exposures();
+  Vec3 off_by(const Vec3& shown, const Vec3& wanted, const TrainingViews::Pixel& pixel) const;
+  void set_gains(const std::vector<Vec3>& gains);
   double rate() const;
 
   TrainingPlan plan_;
@@ -73,6 +86,10 @@ class Reconstruction {
   std::vector<Vec3> position_slopes_;
   GradientSteps cell_steps_, offset_steps_;
   std::size_t steps_done_ = 0;
+  Exposures exposures_;
+  double exposure_spread_ = 0;
+  bool has_gains_ = false;
+  std::vector<Vec3> gains_;
 };
 
 }  // namespace rebake

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "mesh_ops/reconstruction/grid_space.h"
 
@@ -22,6 +24,7 @@ struct TrainingPlan {
   double rate = 2e-3;         ///< first learning rate of stage 1 (1e-3); falls to a hundredth
   double binary_rate = 5e-4;  ///< learning rate of stage 2 (1e-5); falls to a tenth
   double distortion = 0;      ///< weight of the distortion loss: 0 object, 0.01 forward, 0.001 unbounded
+  bool gains = true;          ///< photographs get gains if their exposures differ
   bool four_rays = true;      ///< stage 2 averages four rays per pixel
 
   std::size_t levels = 8;   ///< of the hash grids
@@ -30,6 +33,17 @@ struct TrainingPlan {
 
   std::size_t steps() const { return soft_steps + binary_steps + feature_steps; }
 };
+
+/// A plan with hits, hash grids and losses that suit a kind of capture and a grid, and batches that suit the number of
+/// `pixels` of all photographs.
+TrainingPlan plan_for(CaptureKind kind, int side, std::size_t pixels, std::uint64_t seed);
+/// The plan with its steps scaled to about `steps` in all; more if too few would be left before empty cells are left
+/// out, which need to be told from others.
+TrainingPlan with_steps(TrainingPlan plan, double steps);
+/// How many steps before empty cells are left out take the time of the whole plan (measured on two cores).
+double open_steps_of_time(const TrainingPlan& plan);
+/// The plan in words: its parts, why others are left out, and the published sizes; a sentence per line.
+std::vector<std::string> words_of(const TrainingPlan& plan);
 
 /// The parts of a training.
 enum class TrainingStage { soft, binary, features, done };

@@ -11,20 +11,20 @@ namespace rebake {
 
 TrainingViews::TrainingViews(std::vector<FitPhotograph> photographs, const Affine& to_unit, Axes axes)
     : photographs_(std::move(photographs)), to_unit_(to_unit), axes_(axes_matrix(axes)) {
-  std::size_t total = 0;
   for (const FitPhotograph& photograph : photographs_) {
-    const auto count = static_cast<std::size_t>(
-        std::count_if(photograph.valid.begin(), photograph.valid.end(), [](std::uint8_t flag) { return flag != 0; }));
-    valid_.emplace_back();
-    if (count < photograph.valid.size())
-      for (std::uint32_t p = 0; p < photograph.valid.size(); ++p)
-        if (photograph.valid[p] != 0) valid_.back().push_back(p);
-    ends_.push_back(total += count);
     to_scene_.emplace_back(world_to_camera(photograph.camera).transpose());
     focal_.push_back(photograph.height / (2 * std::tan(photograph.camera.fov_degrees * std::numbers::pi / 360)));
   }
   colors_.resize(photographs_.size());
   for (std::size_t k = 0; k < photographs_.size(); ++k) set_gain(k, Vec3::Ones());
+  std::size_t total = 0;
+  for (const FitPhotograph& photograph : photographs_) {
+    std::vector<std::uint32_t>& valid = valid_.emplace_back();
+    for (std::uint32_t p = 0; p < photograph.valid.size(); ++p)
+      if (photograph.valid[p] != 0) valid.push_back(p);
+    ends_.push_back(total += valid.size());
+    if (valid.size() == photograph.valid.size()) valid = {};
+  }
   if (total == 0) throw Error("no pixel of the photographs counts: masks leave out all");
 }
 
@@ -56,11 +56,18 @@ Vec3 TrainingViews::color(const Pixel& pixel) const {
   return {table[0][at[0]], table[1][at[1]], table[2][at[2]]};
 }
 
+Vec3 TrainingViews::raw_color(const Pixel& pixel) const {
+  const FitPhotograph& one = photographs_[pixel.photograph];
+  const std::uint8_t* at = &one.rgb[3 * (static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(one.width) +
+                                         static_cast<std::size_t>(pixel.x))];
+  return Vec3(at[0], at[1], at[2]) / 255;
+}
+
 void TrainingViews::set_gain(std::size_t photograph, const Vec3& gain) {
   for (std::size_t channel = 0; channel < 3; ++channel)
     for (std::size_t byte = 0; byte < 256; ++byte) {
       const double value = static_cast<double>(byte) / 255, factor = gain[static_cast<Eigen::Index>(channel)];
-      colors_[photograph][channel][byte] = factor == 1 ? value : std::min(1.0, to_display(to_linear(value) / factor));
+      colors_[photograph][channel][byte] = factor == 1 ? value : to_display(std::min(1.0, to_linear(value) / factor));
     }
 }
 

@@ -30,6 +30,8 @@ class TrainingViews {
   TrainingRay ray(std::size_t photograph, double x, double y) const;
   /// Display colour of a pixel, 0 … 1, with its photograph's gain removed.
   Vec3 color(const Pixel& pixel) const;
+  /// Display colour of a pixel as it is in the photograph.
+  Vec3 raw_color(const Pixel& pixel) const;
   /// Exposure and white balance of a photograph: its linear light is that of the scene times this. All 1 at first.
   void set_gain(std::size_t photograph, const Vec3& gain);
 

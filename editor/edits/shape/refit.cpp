@@ -16,7 +16,7 @@
 #include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/refit/photograph_fit.h"
-#include "render/photograph.h"
+#include "render/photograph_set.h"
 #include "render/picture.h"
 
 namespace rebake {
@@ -25,10 +25,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+PhotographSource source_of(const Refit& edit) { return {edit.path, edit.format.name, edit.world, edit.scale}; }
+
 std::vector<PhotoCamera> cameras_of(const Refit& edit, std::vector<std::string>& notes) {
-  std::vector<PhotoCamera> cameras = read_cameras(edit.path, edit.format.name, edit.world, notes);
-  for (PhotoCamera& camera : cameras) camera.eye *= edit.scale;
-  return cameras;
+  return read_cameras(source_of(edit), notes);
 }
 
 // The photographs that exist, with the masks that their cameras name.
@@ -66,21 +66,13 @@ std::vector<FitTarget> targets_of(const Scene& scene, const Refit& edit) {
 // The photographs for the fit.
 std::vector<FitPhotograph> read_all(const Scene& scene, const Refit& edit, const std::vector<PhotoCamera>& cameras,
                                     Report& report, const Progress& progress) {
-  std::vector<std::string> dropped;
-  const std::vector<Camera> views = views_of(cameras, dropped);
-  const fs::path folder = capture_folder(edit.path);
+  PhotographSet set = read_photographs(source_of(edit), cameras, scene.background, progress);
   std::vector<FitPhotograph> photographs;
   std::optional<Renderer> renderer;
-  std::size_t missing = 0;
   double least = std::numeric_limits<double>::infinity(), most = 0;
-  for (std::size_t k = 0; k < cameras.size(); ++k) {
-    progress.at("reading photographs", static_cast<double>(k) / static_cast<double>(cameras.size()));
-    if (photograph_at(folder, cameras[k].name).empty()) {
-      ++missing;
-      continue;
-    }
-    Photograph photograph = read_photograph(cameras[k], views[k], folder, scene.background);
+  for (Photograph& photograph : set.photographs) {
     if (edit.gain) {
+      progress.at("comparing exposures", static_cast<double>(photographs.size()) / static_cast<double>(cameras.size()));
       if (!renderer) renderer.emplace();
       View view;
       view.camera = with_planes(photograph.camera, world_bounds(scene),
@@ -94,12 +86,10 @@ std::vector<FitPhotograph> read_all(const Scene& scene, const Refit& edit, const
       leave_out_clipped(photograph);
       photograph.image = with_gain(photograph.image, gain.cwiseMax(1e-3).cwiseInverse());
     }
-    photographs.push_back({photograph.camera, photograph.image.width, photograph.image.height,
-                           std::move(photograph.image.rgb), std::move(photograph.valid)});
+    photographs.push_back(for_fit(std::move(photograph)));
   }
-  if (photographs.empty()) throw EditError(edit.path + ": none of its photographs exists");
-  if (missing > 0)
-    report.lines.push_back(fmt::format("warning: {} of {} photographs are missing", missing, cameras.size()));
+  if (set.missing > 0)
+    report.lines.push_back(fmt::format("warning: {} of {} photographs are missing", set.missing, cameras.size()));
   if (edit.gain)
     report.lines.push_back(fmt::format("exposures of the photographs: gains {:.2f} to {:.2f}", least, most));
   return photographs;

@@ -39,23 +39,35 @@ bool has_list(const fs::path& path, const char* name, const char* list) {
   }
 }
 
-template <const char* name>
-std::vector<fs::path> single_file(const fs::path& path) {
-  return {file_at(path, name)};
-}
-
 constexpr char transforms[] = "transforms.json";
 constexpr char poses[] = "poses_bounds.npy";
 constexpr char camera_path[] = "camera_path.json";
 constexpr char ngp_path[] = "base_cam.json";
 
+// The file transforms.json of a folder, or where only that exists, the training cameras of NeRF's synthetic scenes.
+fs::path transforms_file(const fs::path& path) {
+  const fs::path file = file_at(path, transforms);
+  std::error_code error;
+  if (fs::exists(file, error) || file == path) return file;
+  const fs::path train = path / "transforms_train.json";
+  return fs::exists(train, error) ? train : file;
+}
+
+template <const char* name>
+std::vector<fs::path> single_file(const fs::path& path) {
+  return {file_at(path, name)};
+}
+
 const CameraFormat table[] = {
     {"transforms", "NeRF transforms", transforms, WorldUp::z,
-     [](const fs::path& path) { return has_list(path, transforms, "frames"); },
+     [](const fs::path& path) { return has_list(transforms_file(path), transforms, "frames"); },
      [](const fs::path& path, std::vector<std::string>& notes) {
-       return read_transforms(file_at(path, transforms), notes);
+       const fs::path file = transforms_file(path);
+       if (file != path && file.filename() != transforms)
+         notes.push_back(fmt::format("reads {} of the folder; name a file to read others", file.filename().string()));
+       return read_transforms(file, notes);
      },
-     single_file<transforms>, transforms_text},
+     [](const fs::path& path) { return std::vector{transforms_file(path)}; }, transforms_text},
     {"colmap", "COLMAP model", "folder with cameras and images as .bin or .txt", WorldUp::y,
      [](const fs::path& path) { return !colmap_folder(path).empty(); }, read_colmap, colmap_files, nullptr},
     {"poses_bounds", "LLFF poses", poses, WorldUp::y,

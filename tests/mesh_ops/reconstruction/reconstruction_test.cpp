@@ -120,7 +120,7 @@ TEST(Reconstruction, LearnsABallThatTheBakedObjectShows) {
   BakeReconstructionCounts counts;
   const auto object = bake(training, {}, counts, {});
   EXPECT_GT(counts.visible_quads, 100U);
-  EXPECT_LT(counts.visible_quads, counts.quads);  // what lies inside the ball is left out
+  EXPECT_LT(counts.visible_quads, counts.quads);  // the inside of the ball is left out
   EXPECT_EQ(object->axes, Axes::y_up);
   EXPECT_EQ(object->decoder->hidden0(), 16);
   // All vertices lie around the ball of radius ½.

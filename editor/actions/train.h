@@ -1,0 +1,43 @@
+#pragma once
+
+#include "editor/actions/action.h"
+#include "editor/actions/session.h"
+#include "editor/fields/values.h"
+#include "mesh_ops/reconstruction/grid_space.h"
+
+namespace rebake {
+
+/// Trains a scene from photographs with known cameras and writes it as a MobileNeRF folder. The document stays as it
+/// is.
+struct TrainAction {
+  static constexpr const char* op = "train";
+  std::string photographs;        ///< camera file or folder of a capture
+  std::string out;                ///< folder to write
+  CaptureKind kind{};             ///< object
+  std::optional<double> minutes;  ///< about how long it may take
+  std::optional<int> steps;       ///< number of steps; nothing: by `minutes`, else 17000
+  std::optional<int> side;        ///< cells per side of the grid
+  std::optional<double> near;     ///< forward: nearest depth
+  int seed = 1;
+  CameraFormatName format;       ///< empty: recognised
+  std::optional<WorldUp> world;  ///< as for import_views
+  double scale = 1;              ///< factor of the cameras' positions
+  std::string held_out;          ///< camera file of photographs to judge the result by
+  int hold_out = 8;              ///< every n-th photograph judges the result; 0: none
+  bool one_exposure = false;     ///< no gains per photograph
+  bool one_ray = false;          ///< one ray per pixel in stage 2
+  int samples = 16;              ///< texels between the corners of a quad
+  bool fresh = false;            ///< starts again instead of going on from a checkpoint
+
+  /// The camera files and the photographs.
+  static std::vector<std::filesystem::path> input_files(const nlohmann::json& object);
+};
+template <>
+const ActionType& action_type<TrainAction>();
+template <>
+TrainAction read_action<TrainAction>(const nlohmann::json& object, const Scene& scene);
+
+/// Throws FieldError, FileError, Error for captures that cannot be trained on, and Cancelled; then a checkpoint stays.
+void run(Session& session, const TrainAction& action);
+
+}  // namespace rebake

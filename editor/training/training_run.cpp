@@ -1,0 +1,226 @@
+#include "editor/training/training_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "editor/training/checkpoint.h"
+#include "editor/training/training_judgement.h"
+#include "mesh_ops/base/duration.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "render/contact_sheet.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double seconds_between_checkpoints = 300;
+constexpr const char *checkpoint_name = "checkpoint", *preview_name = "preview.png", *table_name = "progress.csv",
+                     *lock_name = "lock";
+
+double psnr_of(double mean_squared_error) { return -10 * std::log10(std::max(mean_squared_error, 1e-10)); }
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Cells per side that suit the photographs: half a cell per pixel, from small ones to the published grid.
+int side_for(const std::vector<FitPhotograph>& photographs) {
+  std::vector<int> heights;
+  for (const FitPhotograph& one : photographs) heights.push_back(std::min(one.width, one.height));
+  std::nth_element(heights.begin(), heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2), heights.end());
+  return std::clamp(heights[heights.size() / 2] / 2 / 16 * 16, 32, 128);
+}
+
+CaptureFrame frame_of(const ReconstructionOptions& options, const Capture& capture, const Vec3& background, int side) {
+  constexpr double free_cells = 2;
+  if (options.kind == CaptureKind::object) return object_frame(capture.training, background, free_cells / side);
+  throw FieldError("kind", "is not supported");
+}
+
+// Coarse below a minute and a half: logs get each text once.
+std::string remaining(double seconds) {
+  constexpr double step = 30;
+  return duration_text(seconds < 90 ? std::ceil(seconds / step) * step : seconds);
+}
+
+const char* name_of(TrainingStage stage) {
+  return stage == TrainingStage::soft ? "stage 1" : stage == TrainingStage::binary ? "stage 2" : "stage 2, features";
+}
+
+}  // namespace
+
+TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, const Vec3& background, fs::path work,
+                         Say say, const Progress& progress)
+    : options_(options), capture_(std::move(capture)), work_(std::move(work)), say_(std::move(say)) {
+  check(options_);
+  std::error_code error;
+  fs::create_directories(work_, error);
+  if (error) throw FileError(work_, "cannot be created: " + error.message());
+  lock_ = std::make_unique<FileLock>(work_ / lock_name);
+  if (!lock_->held()) throw FileError(work_, "is in use by another training to the same folder");
+  const int side = options_.side.value_or(side_for(capture_.training));
+  frame_ = frame_of(options_, capture_, background, side);
+  for (const std::string& note : frame_.notes) say_(note);
+  std::size_t pixels = 0;
+  for (const FitPhotograph& one : capture_.training) pixels += one.valid.size();
+  TrainingPlan plan = plan_for(options_.kind, side, pixels, static_cast<std::uint64_t>(options_.seed));
+  plan.to_unit = frame_.to_unit;
+  plan.gains = options_.gains && capture_.training.size() > 1;
+  plan.four_rays = options_.four_rays;
+  nlohmann::json head;
+  std::optional<std::string> state;
+  if (!options_.fresh) state = read_checkpoint(work_ / checkpoint_name, head);
+  if (state) {
+    if (head.value("options", nlohmann::json()) != identity_of(options_) ||
+        head.value("photographs", std::uint64_t{0}) != capture_.hash)
+      throw FileError(work_,
+                      "holds the checkpoint of a training with other options or photographs; use the same ones, "
+                      "another folder, or start again with fresh (--fresh)");
+    const std::vector<std::size_t> steps = head.at("steps");
+    std::tie(plan.open_steps, plan.soft_steps, plan.binary_steps, plan.feature_steps) =
+        std::tuple(steps.at(0), steps.at(1), steps.at(2), steps.at(3));
+  } else {
+    plan_steps(plan, progress);
+  }
+  for (const std::string& line : words_of(plan)) say_("plan: " + line);
+  TrainingViews views(capture_.training, plan.to_unit, plan.kind == CaptureKind::forward ? Axes::forward : Axes::y_up);
+  reconstruction_ = std::make_unique<Reconstruction>(plan, std::move(views), frame_.background, hash_fields(plan));
+  if (plan.gains && !frame_.gains.empty()) reconstruction_->start_with_gains(frame_.gains);
+  if (!state) return;
+  reconstruction_->load(*state);
+  seconds_before_ = head.value("seconds", 0.0);
+  rows_ = head.value("rows", rows_);
+  say_(fmt::format("goes on from step {} of {}", reconstruction_->steps_done(), plan.steps()));
+}
+
+// Sets the number of steps: as usual, as given, or by time.
+void TrainingRun::plan_steps(TrainingPlan& plan, const Progress& progress) {
+  if (options_.steps) plan = with_steps(plan, *options_.steps);
+  if (!options_.minutes) return;
+  progress.at("measuring the time of a step", 0);
+  Reconstruction trial(plan, TrainingViews(capture_.training, plan.to_unit, Axes::y_up), frame_.background,
+                       hash_fields(plan));
+  std::vector<double> times;
+  constexpr int trials = 7;
+  for (int k = 0; k < trials; ++k) {
+    const auto start = std::chrono::steady_clock::now();
+    trial.step();
+    times.push_back(seconds_since(start));
+  }
+  std::nth_element(times.begin(), times.begin() + trials / 2, times.end());
+  constexpr double share_of_training = 0.9;  // the rest bakes and compares
+  const double open_steps = share_of_training * 60 * *options_.minutes / times[trials / 2];
+  plan = with_steps(plan, static_cast<double>(plan.steps()) * open_steps / open_steps_of_time(plan));
+}
+
+double TrainingRun::seconds() const { return seconds_before_ + seconds_since(start_); }
+
+void TrainingRun::write_state() {
+  const TrainingPlan& plan = reconstruction_->plan();
+  const nlohmann::json head = {{"options", identity_of(options_)},
+                               {"photographs", capture_.hash},
+                               {"steps", {plan.open_steps, plan.soft_steps, plan.binary_steps, plan.feature_steps}},
+                               {"seconds", seconds()},
+                               {"rows", rows_}};
+  try {
+    write_checkpoint(work_ / checkpoint_name, head, reconstruction_->save());
+  } catch (const FileError& error) {
+    say_(fmt::format("warning: the checkpoint could not be written; the training goes on: {}", error.what()));
+  }
+}
+
+// A row of the table, and a picture of the scene beside a photograph.
+void TrainingRun::show_progress(double mean_error) {
+  rows_.push_back({static_cast<double>(reconstruction_->steps_done()), seconds(), psnr_of(mean_error)});
+  std::string table = "steps,seconds,PSNR of training pixels dB\n";
+  for (const auto& [steps, seconds, psnr] : rows_) table += fmt::format("{:.0f},{:.1f},{:.3f}\n", steps, seconds, psnr);
+  const FitPhotograph& photograph = capture_.training.front();
+  const Image wanted{photograph.width, photograph.height, photograph.rgb, {}};
+  try {
+    write_file_atomically(work_ / table_name, table, {});
+    write_picture(contact_sheet({wanted, trained_picture(*reconstruction_, photograph)}, 2, 4, {128, 128, 128}),
+                  work_ / preview_name, {});
+  } catch (const FileError& error) {
+    say_(fmt::format("warning: {}", error.what()));
+  }
+  if (watch) watch(*reconstruction_);
+}
+
+void TrainingRun::train(const Progress& progress) {
+  start_ = std::chrono::steady_clock::now();
+  const std::size_t first = reconstruction_->steps_done(), total = reconstruction_->plan().steps();
+  // Work is counted in steps without empty cells left out.
+  const auto work_of = [&](std::size_t steps) {
+    TrainingPlan part = reconstruction_->plan();
+    const auto take = [&](std::size_t& count) {
+      count = std::min(count, steps);
+      steps -= count;
+    };
+    std::size_t culled = part.soft_steps - part.open_steps;
+    take(part.open_steps);
+    take(culled);
+    part.soft_steps = part.open_steps + culled;
+    take(part.binary_steps);
+    take(part.feature_steps);
+    return open_steps_of_time(part);
+  };
+  const double all_work = work_of(total), work_before = work_of(first);
+  double shown = 0, saved = 0, error = 0, psnr = 0;
+  std::size_t errors = 0;
+  try {
+    while (reconstruction_->stage() != TrainingStage::done) {
+      const TrainingStage stage = reconstruction_->stage();
+      error += reconstruction_->step();
+      ++errors;
+      const double now = seconds_since(start_);
+      const std::size_t done = reconstruction_->steps_done();
+      const bool ends_stage = reconstruction_->stage() != stage;
+      constexpr double first_look = 5;
+      if (ends_stage || now - shown > watch_seconds || (shown == 0 && now > first_look)) {
+        shown = now;
+        psnr = psnr_of(error / static_cast<double>(errors));
+        show_progress(error / static_cast<double>(errors));
+        error = 0;
+        errors = 0;
+      }
+      if (ends_stage)
+        say_(fmt::format("{} done after {}: {:.2f} dB on training pixels", name_of(stage), duration_text(seconds()),
+                         psnr));
+      if (ends_stage && stage == TrainingStage::soft && reconstruction_->plan().gains)
+        say_(reconstruction_->has_gains()
+                 ? fmt::format("exposures differ by {:.0f} %: each photograph has a gain",
+                               100 * reconstruction_->exposure_spread())
+                 : fmt::format("exposures: no gains; differences of {:.1f} % do not explain the errors",
+                               100 * reconstruction_->exposure_spread()));
+      if (ends_stage || now - saved > seconds_between_checkpoints) {
+        write_state();
+        saved = seconds_since(start_);
+      }
+      const double work = work_of(done);
+      const std::string rest =
+          work > work_before + 10 ? about + remaining((all_work - work) * now / (work - work_before)) : std::string();
+      progress.at(fmt::format("training {}{}{}, step {} of {}", name_of(stage), rest,
+                              psnr > 0 ? fmt::format(", {:.1f} dB", psnr) : "", done, total),
+                  0.95 * work / all_work);
+    }
+  } catch (const Cancelled&) {
+    write_state();
+    say_(fmt::format("stopped at step {} of {}; the same command goes on from there", reconstruction_->steps_done(),
+                     total));
+    throw;
+  }
+}
+
+void TrainingRun::remove_work_files() {
+  std::error_code error;
+  for (const char* name : {checkpoint_name, preview_name, table_name, lock_name}) fs::remove(work_ / name, error);
+  fs::remove(work_, error);  // stays if it holds other files
+}
+
+}  // namespace rebake

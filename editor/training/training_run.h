@@ -1,0 +1,58 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+#include "editor/training/reconstruction_options.h"
+#include "mesh_ops/base/file_lock.h"
+#include "mesh_ops/reconstruction/bake_reconstruction.h"
+#include "mesh_ops/reconstruction/capture_frame.h"
+#include "mesh_ops/reconstruction/reconstruction.h"
+
+namespace rebake {
+
+/// A training of a scene, with checkpoints in a folder beside its result. Going on after an interruption gives the same
+/// numbers.
+class TrainingRun {
+ public:
+  using Say = std::function<void(const std::string&)>;
+
+  /// Plans the training, or reads its checkpoint. `work`: folder for the checkpoint, a preview and a table of the
+  /// progress; created. Throws FieldError, FileError, Error for captures that cannot be trained on, and Cancelled.
+  TrainingRun(const ReconstructionOptions& options, Capture capture, const Vec3& background, std::filesystem::path work,
+              Say say, const Progress& progress);
+
+  /// Trains to the end. If it is cancelled, writes a checkpoint and throws Cancelled.
+  void train(const Progress& progress);
+  /// Called about every `watch_seconds` with the state, if set.
+  std::function<void(const Reconstruction&)> watch;
+  double watch_seconds = 20;
+
+  const Capture& capture() const { return capture_; }
+  const CaptureFrame& frame() const { return frame_; }
+  const Reconstruction& reconstruction() const { return *reconstruction_; }
+  double seconds() const;  ///< time of training, over all interruptions
+  /// Rows of the table of the progress: steps, seconds, PSNR in dB of the training pixels since the row before.
+  const std::vector<std::array<double, 3>>& progress_rows() const { return rows_; }
+  /// Removes the files of the work folder.
+  void remove_work_files();
+
+ private:
+  void plan_steps(TrainingPlan& plan, const Progress& progress);
+  void write_state();
+  void show_progress(double mean_error);
+
+  ReconstructionOptions options_;
+  Capture capture_;
+  CaptureFrame frame_;
+  std::filesystem::path work_;
+  Say say_;
+  std::unique_ptr<FileLock> lock_;
+  std::unique_ptr<Reconstruction> reconstruction_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double seconds_before_ = 0;  // of interrupted runs
+  std::vector<std::array<double, 3>> rows_;
+};
+
+}  // namespace rebake

@@ -1,0 +1,54 @@
+#include "render/photograph_set.h"
+
+#include <algorithm>
+
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/photographs.h"
+
+namespace rebake {
+
+std::vector<PhotoCamera> read_cameras(const PhotographSource& source, std::vector<std::string>& notes) {
+  std::vector<PhotoCamera> cameras = read_cameras(source.path, source.format, source.world, notes);
+  for (PhotoCamera& camera : cameras) {
+    camera.eye *= source.scale;
+    camera.near_plane *= source.scale;
+    camera.far_plane *= source.scale;
+  }
+  return cameras;
+}
+
+PhotographSet read_photographs(const PhotographSource& source, const std::vector<PhotoCamera>& cameras,
+                               const Vec3& background, const Progress& progress) {
+  std::vector<std::string> dropped;
+  const std::vector<Camera> views = views_of(cameras, dropped);
+  const std::filesystem::path folder = capture_folder(source.path);
+  PhotographSet set;
+  for (std::size_t k = 0; k < cameras.size(); ++k) {
+    progress.at("reading photographs", static_cast<double>(k) / static_cast<double>(cameras.size()));
+    if (photograph_at(folder, cameras[k].name).empty()) {
+      if (set.missing++ == 0) set.first_missing = cameras[k].name;
+      continue;
+    }
+    Photograph photograph = read_photograph(cameras[k], views[k], folder, background);
+    set.resampled += photograph.resampled ? 1 : 0;
+    if (std::find(photograph.valid.begin(), photograph.valid.end(), 1) == photograph.valid.end()) {
+      ++set.masked;
+      continue;
+    }
+    set.cameras.push_back(cameras[k]);
+    set.photographs.push_back(std::move(photograph));
+  }
+  if (set.photographs.empty())
+    throw FileError(source.path,
+                    "none of its photographs exists and shows something" +
+                        (set.first_missing.empty() ? std::string() : "; the first is \"" + set.first_missing + "\""));
+  return set;
+}
+
+FitPhotograph for_fit(Photograph photograph) {
+  return {photograph.camera, photograph.image.width, photograph.image.height, std::move(photograph.image.rgb),
+          std::move(photograph.valid)};
+}
+
+}  // namespace rebake
