@@ -29,6 +29,7 @@ ReconstructionOptions options_of(const TrainAction& action) {
   options.steps = action.steps;
   options.side = action.side;
   options.near = action.near;
+  options.far = action.far;
   options.seed = action.seed;
   options.gains = !action.one_exposure;
   options.four_rays = !action.one_ray;
@@ -156,7 +157,10 @@ REBAKE_DESCRIBE_ACTION(
       visit("steps", action.steps, Need::optional, "number of steps; default: 17000");
       visit("side", action.side, Need::optional,
             "cells per side of the grid, 16 to 256; default: by the photographs, 32 to 128");
-      visit("near", action.near, Need::optional, "forward: nearest depth; default: as the camera file states");
+      visit("near", action.near, Need::optional,
+            "forward: nearest depth; default: as the camera file states, else assumed");
+      visit("far", action.far, Need::optional,
+            "forward: farthest depth; default: as the camera file states, else assumed");
       visit("seed", action.seed, Need::optional, "start of the random numbers");
       visit("format", action.format, Need::optional, "format of the camera file; auto: recognised");
       visit("world", action.world, Need::optional, "axis that points up in the camera file, as for import_views");

@@ -18,6 +18,7 @@ struct TrainAction {
   std::optional<int> steps;       ///< number of steps; nothing: by `minutes`, else 17000
   std::optional<int> side;        ///< cells per side of the grid
   std::optional<double> near;     ///< forward: nearest depth
+  std::optional<double> far;      ///< forward: farthest depth
   int seed = 1;
   CameraFormatName format;       ///< empty: recognised
   std::optional<WorldUp> world;  ///< as for import_views

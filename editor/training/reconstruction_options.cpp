@@ -20,6 +20,10 @@ void check(const ReconstructionOptions& options) {
     throw FieldError("side", "must lie between 16 and 256 cells");
   if (options.near && !(std::isfinite(*options.near) && *options.near > 0))
     throw FieldError("near", "must be a number above 0");
+  if (options.far && !(std::isfinite(*options.far) && *options.far > options.near.value_or(0)))
+    throw FieldError("far", "must be a number above near");
+  if (options.kind != CaptureKind::forward && (options.near || options.far))
+    throw FieldError(options.near ? "near" : "far", "applies to forward captures only");
   if (options.seed < 0) throw FieldError("seed", "must be at least 0");
   if (options.held_out.every < 0 || options.held_out.every == 1)
     throw FieldError("hold_out", "must be 0 (none) or at least 2");
@@ -35,6 +39,7 @@ nlohmann::json identity_of(const ReconstructionOptions& options) {
   if (options.steps) identity["steps"] = *options.steps;
   if (options.side) identity["side"] = *options.side;
   if (options.near) identity["near"] = *options.near;
+  if (options.far) identity["far"] = *options.far;
   return identity;
 }
 

@@ -18,6 +18,7 @@ struct ReconstructionOptions {
   std::optional<int> steps;       ///< number of steps; nothing: by `minutes`
   std::optional<int> side;        ///< cells per side of the grid; nothing: by the size of the photographs
   std::optional<double> near;     ///< forward-facing captures: nearest depth; nothing: as the camera file states
+  std::optional<double> far;      ///< as `near`: farthest depth
   int seed = 1;
   bool gains = true;      ///< gives photographs gains if their exposures differ
   bool four_rays = true;  ///< see TrainingPlan

@@ -76,7 +76,7 @@ TrainingBaselines baselines(const Capture& capture) {
 double held_out_psnr(const Reconstruction& training, const Capture& capture, const Progress& progress) {
   std::vector<FitPhotograph> photographs;
   for (const Photograph& photograph : capture.held_out) photographs.push_back(for_fit(photograph));
-  const TrainingViews views(std::move(photographs), training.plan().to_unit, training.axes());
+  const TrainingViews views(std::move(photographs), training.plan().to_unit, trained_axes);
   double sum = 0;
   for (std::size_t k = 0; k < capture.held_out.size(); ++k) {
     progress.at("comparing held-out photographs",
@@ -105,7 +105,7 @@ MeanErrors held_out_errors(Renderer& renderer, const Scene& scene, const Capture
 }
 
 Image trained_picture(const Reconstruction& training, const FitPhotograph& photograph) {
-  const TrainingViews views({photograph}, training.plan().to_unit, training.axes());
+  const TrainingViews views({photograph}, training.plan().to_unit, trained_axes);
   std::vector<float> colors;
   training.error_of(views, 0, &colors);
   Image image{photograph.width, photograph.height, {}, {}};

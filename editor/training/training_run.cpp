@@ -40,7 +40,8 @@ int side_for(const std::vector<FitPhotograph>& photographs) {
 CaptureFrame frame_of(const ReconstructionOptions& options, const Capture& capture, const Vec3& background, int side) {
   constexpr double free_cells = 2;
   if (options.kind == CaptureKind::object) return object_frame(capture.training, background, free_cells / side);
-  throw FieldError("kind", "is not supported");
+  if (options.kind == CaptureKind::unbounded) return unbounded_frame(capture.training);
+  return forward_frame(capture.training, options.near.value_or(0), options.far.value_or(0));
 }
 
 // Coarse below a minute and a half: logs get each text once.
@@ -71,6 +72,7 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
   for (const FitPhotograph& one : capture_.training) pixels += one.valid.size();
   TrainingPlan plan = plan_for(options_.kind, side, pixels, static_cast<std::uint64_t>(options_.seed));
   plan.to_unit = frame_.to_unit;
+  plan.frustum = frame_.frustum;
   plan.gains = options_.gains && capture_.training.size() > 1;
   plan.four_rays = options_.four_rays;
   nlohmann::json head;
@@ -89,7 +91,7 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
     plan_steps(plan, progress);
   }
   for (const std::string& line : words_of(plan)) say_("plan: " + line);
-  TrainingViews views(capture_.training, plan.to_unit, plan.kind == CaptureKind::forward ? Axes::forward : Axes::y_up);
+  TrainingViews views(capture_.training, plan.to_unit, trained_axes);
   reconstruction_ = std::make_unique<Reconstruction>(plan, std::move(views), frame_.background, hash_fields(plan));
   if (plan.gains && !frame_.gains.empty()) reconstruction_->start_with_gains(frame_.gains);
   if (!state) return;
@@ -104,7 +106,7 @@ void TrainingRun::plan_steps(TrainingPlan& plan, const Progress& progress) {
   if (options_.steps) plan = with_steps(plan, *options_.steps);
   if (!options_.minutes) return;
   progress.at("measuring the time of a step", 0);
-  Reconstruction trial(plan, TrainingViews(capture_.training, plan.to_unit, Axes::y_up), frame_.background,
+  Reconstruction trial(plan, TrainingViews(capture_.training, plan.to_unit, trained_axes), frame_.background,
                        hash_fields(plan));
   std::vector<double> times;
   constexpr int trials = 7;

@@ -18,67 +18,98 @@ namespace {
 constexpr int largest_texture = 4096;
 constexpr std::size_t quads_at_once = 1024;
 
+// A quad of the grid, or of a side of a nested box, with its corners in the normalised frame.
+struct BakedQuad {
+  std::array<Vec3, 4> corners;
+  int box = -1;  // −1: of the grid
+};
+
 // A quad with its opaque texels, row by row.
-struct OpaqueQuad {
-  std::array<std::uint32_t, 4> corners;  // vertices
+struct OpaqueQuad : BakedQuad {
   std::vector<bool> opaque;
 };
 
 // Where texel (column, row) of a quad lies, in the normalised frame: linear on each of its two triangles.
-Vec3 place_of(const FreeGrid& grid, const std::array<std::uint32_t, 4>& corners, double across, double down) {
-  const std::vector<Vec3>& at = grid.positions();
-  const Vec3 &p0 = at[corners[0]], &p1 = at[corners[1]], &p2 = at[corners[2]], &p3 = at[corners[3]];
-  return across >= down ? Vec3(p0 + across * (p1 - p0) + down * (p3 - p1))
-                        : Vec3(p0 + down * (p2 - p0) + across * (p3 - p2));
+Vec3 place_of(const std::array<Vec3, 4>& p, double across, double down) {
+  return across >= down ? Vec3(p[0] + across * (p[1] - p[0]) + down * (p[3] - p[1]))
+                        : Vec3(p[0] + down * (p[2] - p[0]) + across * (p[3] - p[2]));
 }
 
-FieldPoint field_point(const GridSpace& space, const Vec3& cells) {
-  FieldPoint point;
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    point[axis] = static_cast<float>(cells[static_cast<Eigen::Index>(axis)] / space.side());
-  return point;
+FieldPoint field_point(const Vec3& place) {
+  return {static_cast<float>(place.x()), static_cast<float>(place.y()), static_cast<float>(place.z())};
+}
+
+// The sides of the nested boxes, in quads of about the texels of the photographs.
+void add_box_quads(const Reconstruction& trained, int samples, std::vector<BakedQuad>& quads) {
+  const GridSpace& space = trained.grid().space();
+  int pixels = 0;
+  for (const FitPhotograph& one : trained.views().photographs())
+    pixels = std::max(pixels, std::max(one.width, one.height));
+  // A side spans about 90 degrees, twice what a photograph does.
+  const int per_side = std::clamp(2 * pixels / samples, 4, 64);
+  for (int box = 0; box < space.boxes(); ++box) {
+    const double radius = space.box_radius(box), step = 2 * radius / per_side;
+    for (int side = 0; side < 4; ++side)
+      for (int row = 0; row < per_side; ++row)
+        for (int column = 0; column < per_side; ++column) {
+          BakedQuad quad;
+          quad.box = box;
+          for (int corner = 0; corner < 4; ++corner) {
+            const double along = -radius + step * (column + corner % 2), up = -radius + step * (row + corner / 2),
+                         out = side % 2 == 0 ? radius : -radius;
+            quad.corners[static_cast<std::size_t>(corner)] = side < 2 ? Vec3(out, along, up) : Vec3(along, out, up);
+          }
+          quads.push_back(quad);
+        }
+  }
 }
 
 // The quads between cells that may hold surface.
-std::vector<std::array<std::uint32_t, 4>> candidates_of(const Reconstruction& trained) {
+std::vector<BakedQuad> candidates_of(const Reconstruction& trained) {
   const GridSpace& space = trained.grid().space();
-  std::vector<std::array<std::uint32_t, 4>> quads;
+  std::vector<BakedQuad> quads;
   for (std::uint32_t cell = 0; cell < space.cell_count(); ++cell) {
     const std::array<int, 3> first = space.cell_of_number(cell);
     for (int axis = 0; axis < 3; ++axis) {
       const auto cells = GridQuad{axis, first}.cells();
-      std::array<std::uint32_t, 4> corners{};
+      BakedQuad quad{};
       bool inside = true, near_surface = false;
       for (std::size_t k = 0; k < 4; ++k) {
         inside = inside &&
                  std::all_of(cells[k].begin(), cells[k].end(), [&](int i) { return i >= 1 && i <= space.side() - 2; });
         if (!inside) break;
-        corners[k] = space.cell_number(cells[k][0], cells[k][1], cells[k][2]);
-        near_surface = near_surface || trained.active()[corners[k]] != 0;
+        const std::uint32_t number = space.cell_number(cells[k][0], cells[k][1], cells[k][2]);
+        quad.corners[k] = trained.grid().positions()[number];
+        near_surface = near_surface || trained.active()[number] != 0;
       }
-      if (inside && near_surface) quads.push_back(corners);
+      if (inside && near_surface) quads.push_back(quad);
     }
   }
   return quads;
 }
 
-// Calls `use(quad, texel number, texel index)` with the points of all texels that `wanted` names, in pieces, after
-// `field` was evaluated there.
+// Places of texels in the fields.
 class TexelSampler {
  public:
   TexelSampler(const Reconstruction& trained, int samples) : trained_(trained), side_(samples + 1) {}
+  int samples() const { return side_ - 1; }
   std::size_t texels_each() const { return static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_); }
-  /// The place of a texel, and whether its cell may hold surface.
-  bool place(const std::array<std::uint32_t, 4>& corners, std::size_t texel, FieldPoint& point) const {
-    const FreeGrid& grid = trained_.grid();
+  /// The place of a texel of a quad. False if it cannot be opaque: in cells without surface.
+  bool place(const BakedQuad& quad, std::size_t texel, FieldPoint& point) const {
+    const GridSpace& space = trained_.grid().space();
     const double column = static_cast<double>(texel % static_cast<std::size_t>(side_)),
                  row = static_cast<double>(texel / static_cast<std::size_t>(side_));
-    const Vec3 cells = grid.space().to_cells(place_of(grid, corners, column / (side_ - 1), row / (side_ - 1)));
+    const Vec3 at = place_of(quad.corners, column / (side_ - 1), row / (side_ - 1));
+    if (quad.box >= 0) {
+      point = field_point(space.box_place(quad.box, at));
+      return true;
+    }
+    const Vec3 cells = space.to_cells(at);
     for (int axis = 0; axis < 3; ++axis)
-      if (!(cells[axis] >= 1 && cells[axis] < grid.space().side() - 1)) return false;
-    point = field_point(grid.space(), cells);
-    return trained_.active()[grid.space().cell_number(static_cast<int>(cells.x()), static_cast<int>(cells.y()),
-                                                      static_cast<int>(cells.z()))] != 0;
+      if (!(cells[axis] >= 1 && cells[axis] < space.side() - 1)) return false;
+    point = field_point(space.field_place(cells));
+    return trained_.active()[space.cell_number(static_cast<int>(cells.x()), static_cast<int>(cells.y()),
+                                               static_cast<int>(cells.z()))] != 0;
   }
 
  private:
@@ -88,7 +119,8 @@ class TexelSampler {
 
 std::vector<OpaqueQuad> opaque_quads(const Reconstruction& trained, const TexelSampler& sampler,
                                      const Progress& progress) {
-  const std::vector<std::array<std::uint32_t, 4>> candidates = candidates_of(trained);
+  std::vector<BakedQuad> candidates = candidates_of(trained);
+  add_box_quads(trained, sampler.samples(), candidates);
   const std::size_t each = sampler.texels_each();
   std::vector<OpaqueQuad> result;
   for (std::size_t begin = 0; begin < candidates.size(); begin += quads_at_once) {
@@ -110,7 +142,7 @@ std::vector<OpaqueQuad> opaque_quads(const Reconstruction& trained, const TexelS
     trained.fields().opacity->evaluate(all, opacities);
     std::size_t next = 0;
     for (std::size_t q = 0; q < count; ++q) {
-      OpaqueQuad quad{candidates[begin + q], std::vector<bool>(each)};
+      OpaqueQuad quad{{candidates[begin + q]}, std::vector<bool>(each)};
       bool any = false;
       for (const std::uint32_t t : texels[q]) {
         quad.opaque[t] = opacities[next++] > 0.5F;
@@ -142,7 +174,7 @@ std::vector<TextureSet> sets_of(const Reconstruction& trained, const std::vector
       const double left = static_cast<double>(q % per_row) * patch, top = static_cast<double>(q / per_row) * patch;
       const auto first = static_cast<std::uint32_t>(positions.size());
       for (std::size_t corner = 0; corner < 4; ++corner) {
-        positions.emplace_back(to_scene * trained.grid().positions()[quads[begin + q].corners[corner]]);
+        positions.emplace_back(to_scene * quads[begin + q].corners[corner]);
         uvs.emplace_back((left + 0.5 + static_cast<double>(corner % 2) * (patch - 1)) / width,
                          1 - (top + 0.5 + static_cast<double>(corner / 2) * (patch - 1)) / height);
       }
@@ -280,7 +312,7 @@ std::vector<std::vector<Texel>> texels_of(const Reconstruction& trained, const s
     std::vector<Texel*> places;
     for (std::size_t q = begin; q < std::min(quads.size(), begin + quads_at_once); ++q)
       for (std::size_t t = 0; t < sampler.texels_each(); ++t)
-        if (FieldPoint point; quads[q].opaque[t] && sampler.place(quads[q].corners, t, point)) {
+        if (FieldPoint point; quads[q].opaque[t] && sampler.place(quads[q], t, point)) {
           points.push_back(point);
           places.push_back(&result[q][t]);
         }
@@ -319,7 +351,7 @@ std::shared_ptr<const BakedObject> bake(const Reconstruction& trained, const Bak
   auto object = std::make_shared<BakedObject>();
   object->sets = sets_of(trained, quads, halves, texels, options.samples + 1);
   object->decoder = std::make_shared<const Decoder>(trained.decoder().to_decoder());
-  object->axes = trained.axes();
+  object->axes = trained_axes;
   object->layout = Layout::split;
   return object;
 }

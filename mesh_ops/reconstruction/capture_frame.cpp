@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "mesh_ops/base/error.h"
@@ -188,6 +189,100 @@ CaptureFrame object_frame(const std::vector<FitPhotograph>& photographs, const V
       "grid: cube of side {:.4g} around ({:.4g}, {:.4g}, {:.4g}), {}", 2 * cube.half, cube.middle.x(), cube.middle.y(),
       cube.middle.z(),
       found ? "from the silhouettes" : "from what the cameras see: the photographs have no even background"));
+  return frame;
+}
+
+namespace {
+
+// Mean of one of the axes of all cameras: 0 right, 1 up, 2 back.
+Vec3 mean_axis(const std::vector<FitPhotograph>& photographs, int axis) {
+  Vec3 sum = Vec3::Zero();
+  for (const FitPhotograph& one : photographs) sum += world_to_camera(one.camera).row(axis).transpose();
+  return sum / static_cast<double>(photographs.size());
+}
+
+Vec3 mean_eye(const std::vector<FitPhotograph>& photographs) {
+  Vec3 sum = Vec3::Zero();
+  for (const FitPhotograph& one : photographs) sum += one.camera.eye;
+  return sum / static_cast<double>(photographs.size());
+}
+
+// Rows x, y and z of a rotation, from z and roughly y.
+Mat3 rotation_with(const Vec3& z, const Vec3& y) {
+  Mat3 rows;
+  rows.row(2) = z.normalized();
+  rows.row(0) = y.cross(z).normalized();
+  rows.row(1) = rows.row(2).cross(rows.row(0));
+  return rows;
+}
+
+}  // namespace
+
+CaptureFrame forward_frame(const std::vector<FitPhotograph>& photographs, double near, double far) {
+  if (photographs.empty()) throw Error("there is no photograph");
+  const Vec3 back = mean_axis(photographs, 2), up = mean_axis(photographs, 1), eye = mean_eye(photographs);
+  constexpr double least = 0.5;  // cosine of the spread of view directions
+  if (!(back.norm() > least && up.cross(back).norm() > least * least))
+    throw Error("the cameras look in different directions: is this a forward-facing capture?");
+  const Mat3 turn = rotation_with(back, up);
+  CaptureFrame frame;
+  bool assumed = false;
+  if (near == 0) {
+    near = std::numeric_limits<double>::infinity();
+    for (const FitPhotograph& one : photographs)
+      if (one.camera.near_plane > 0) near = std::min(near, one.camera.near_plane);
+    assumed = !std::isfinite(near);
+    double distance = 0;
+    for (const FitPhotograph& one : photographs)
+      distance += (one.camera.target - one.camera.eye).norm() / static_cast<double>(photographs.size());
+    if (assumed) near = distance / 2;
+    if (far == 0) {
+      for (const FitPhotograph& one : photographs) far = std::max(far, one.camera.far_plane);
+      if (assumed || far <= near) far = 10 * distance;
+    }
+  }
+  constexpr double nearest = 4.0 / 3, widest = 0.875;
+  const double scale = nearest / near;
+  frame.to_unit = Eigen::Scaling(scale) * Affine(turn) * Eigen::Translation3d(-eye);
+  if (far > near) frame.frustum.farthest = std::max(2.0, 1.1 * scale * far);
+  double slope = 0;
+  for (const FitPhotograph& one : photographs) {
+    const Vec3 place = frame.to_unit * one.camera.eye;
+    const double tangent = std::tan(one.camera.fov_degrees * std::numbers::pi / 360),
+                 aspect = static_cast<double>(one.width) / one.height;
+    const Mat3 to_frame = turn * world_to_camera(one.camera).transpose();
+    for (int corner = 0; corner < 4; ++corner) {
+      const Vec3 ray = to_frame * Vec3((corner % 2 * 2 - 1) * tangent * aspect, (corner / 2 * 2 - 1) * tangent, -1);
+      // Where the corner of the picture is at the nearest depth, and in the distance.
+      for (const double depth : {nearest, 1e6}) {
+        const Vec3 point = place + (depth + place.z()) / -ray.z() * ray;
+        if (ray.z() < 0) slope = std::max(slope, std::max(std::abs(point.x()), std::abs(point.y())) / depth);
+      }
+    }
+  }
+  frame.frustum.slope = std::clamp(1.05 * slope, 0.1, widest);
+  frame.notes.push_back(
+      fmt::format("grid: a frustum from depth {:.4g} to {:.4g}{}", near / nearest, frame.frustum.farthest / scale,
+                  assumed ? "; depths are assumed from the point that the cameras look at: give near and far" : ""));
+  return frame;
+}
+
+CaptureFrame unbounded_frame(const std::vector<FitPhotograph>& photographs) {
+  if (photographs.empty()) throw Error("there is no photograph");
+  const Vec3 up = mean_axis(photographs, 1), eye = mean_eye(photographs);
+  constexpr double least = 0.3;
+  if (!(up.norm() > least)) throw Error("the cameras have no common upward direction");
+  const Vec3 z = up.normalized(), other = std::abs(z.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY();
+  const Mat3 turn = rotation_with(z, other.cross(z).cross(z));
+  double reach = 0;
+  for (const FitPhotograph& one : photographs)
+    reach = std::max(reach, (turn * (one.camera.eye - eye)).cwiseAbs().maxCoeff());
+  if (!(reach > 0)) throw Error("all cameras are at the same place");
+  CaptureFrame frame;
+  frame.to_unit = Eigen::Scaling(1 / reach) * Affine(turn) * Eigen::Translation3d(-eye);
+  frame.notes.push_back(fmt::format(
+      "grid: a cube of side {:.4g} around the cameras, ({:.4g}, {:.4g}, {:.4g}), and nested boxes to 16 times that",
+      2 * reach, eye.x(), eye.y(), eye.z()));
   return frame;
 }
 

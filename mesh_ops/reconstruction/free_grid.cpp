@@ -106,8 +106,11 @@ void FreeGrid::offset_slopes(const std::vector<Vec3>& position_slopes, std::vect
   });
 }
 
-void intersect(const FreeGrid& grid, const std::vector<std::uint8_t>& active, const Vec3& origin, const Vec3& direction,
-               std::size_t most, std::vector<GridHit>& hits) {
+namespace {
+
+// Appends hits of the grid's triangles.
+void intersect_cells(const FreeGrid& grid, const std::vector<std::uint8_t>& active, const Vec3& origin,
+                     const Vec3& direction, std::size_t most, std::vector<GridHit>& hits) {
   const GridSpace& space = grid.space();
   const auto range = space.range_of(origin, direction);
   if (!range) return;
@@ -137,6 +140,20 @@ void intersect(const FreeGrid& grid, const std::vector<std::uint8_t>& active, co
   std::stable_sort(hits.begin() + static_cast<std::ptrdiff_t>(first), hits.end(),
                    [](const GridHit& a, const GridHit& b) { return a.t < b.t; });
   hits.resize(std::min(hits.size(), first + most));
+}
+
+}  // namespace
+
+void intersect(const FreeGrid& grid, const std::vector<std::uint8_t>& active, const Vec3& origin, const Vec3& direction,
+               std::size_t most, std::vector<GridHit>& hits) {
+  intersect_cells(grid, active, origin, direction, most, hits);
+  for (int box = 0; box < grid.space().boxes(); ++box)
+    if (const auto t = grid.space().box_exit(box, origin, direction)) {
+      GridHit hit;
+      hit.t = *t;
+      hit.corners[0] = static_cast<std::uint32_t>(box);
+      hits.push_back(hit);
+    }
 }
 
 }  // namespace rebake

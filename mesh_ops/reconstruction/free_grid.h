@@ -49,14 +49,14 @@ struct GridHit {
   static constexpr std::uint32_t no_cell = 0xffffffff;
   double t = 0;                            ///< the hit is at origin + t · direction
   std::uint32_t cell = no_cell;            ///< the cell in which it lies; no_cell: on a nested box
-  std::array<std::uint32_t, 3> corners{};  ///< cells of the triangle's vertices
+  std::array<std::uint32_t, 3> corners{};  ///< cells of the triangle's vertices; the first is the number of the box
   std::array<double, 3> weights{};         ///< barycentric coordinates
   Vec3 motion = Vec3::Zero();  ///< derivative of t by the position of the hit point: n / (n · direction), n the normal
 };
 
 /// Appends to `hits` the nearest intersections of a ray with triangles in cells that are flagged in `active` (1 per
 /// cell; the outermost cells must be 0), at most `most`, sorted. A triangle counts only where it lies in one of the
-/// cells of its vertices.
+/// cells of its vertices. Then appends the hits of all nested boxes, which do not count.
 void intersect(const FreeGrid& grid, const std::vector<std::uint8_t>& active, const Vec3& origin, const Vec3& direction,
                std::size_t most, std::vector<GridHit>& hits);
 

@@ -97,6 +97,7 @@ double Reconstruction::pixel_step(bool features_only) {
     add_rays(plan_, views_, pixel, batch);
     color = views_.color(pixel);
   }
+  const Vec3 background = step_background(dice);
   batch.find_hits(grid_, active_, plan_.pixel_hits);
   fields_.opacity->evaluate(batch.points, batch.opacities);
 
@@ -123,7 +124,7 @@ double Reconstruction::pixel_step(bool features_only) {
   std::vector<double> errors(count);
   std::vector<Vec3> slopes(means.size());
   for_pixels(means.size(), [&](std::size_t m) {
-    const Vec3 off = off_by(color_of(means[m], &decoded[3 * m], background_), wanted[m % count], pixels[m % count]);
+    const Vec3 off = off_by(color_of(means[m], &decoded[3 * m], background), wanted[m % count], pixels[m % count]);
     if (m < count) errors[m] = off.squaredNorm() / 3;
     slopes[m] = kind_shares[m / count] * 2 * off / (3 * static_cast<double>(count));
     for (std::size_t c = 0; c < 3; ++c)
@@ -138,7 +139,7 @@ double Reconstruction::pixel_step(bool features_only) {
         means[m].feature_slopes[f] = double{input_slopes[m * decoder_inputs + f]};
       for (std::size_t c = 0; c < 3; ++c) {
         const auto at = static_cast<Eigen::Index>(c);
-        means[m].opacity_slope += slopes[m][at] * (double{decoded[3 * m + c]} - background_[at]) +
+        means[m].opacity_slope += slopes[m][at] * (double{decoded[3 * m + c]} - background[at]) +
                                   double{input_slopes[m * decoder_inputs + texel_features + c]} * means[m].fed[at];
       }
       add_hit_slopes(batch, p, each, kinds[k], shown, means[m], feature_slopes,

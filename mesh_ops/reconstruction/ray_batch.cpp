@@ -30,8 +30,13 @@ void RayBatch::find_hits(const FreeGrid& grid, const std::vector<std::uint8_t>& 
     for (std::size_t r = task * rays_per_task; r < std::min(rays.size(), (task + 1) * rays_per_task); ++r)
       for (std::size_t h = first[r]; h < first[r + 1]; ++h) {
         const Vec3 point = rays[r].origin + hits[h].t * rays[r].direction;
-        const Vec3 place = space.to_cells(point) / space.side(),
-                   slope = space.cells_along(point, rays[r].direction) / space.side();
+        Vec3 place, slope = Vec3::Zero();
+        if (hits[h].cell == GridHit::no_cell) {
+          place = space.box_place(static_cast<int>(hits[h].corners[0]), point);
+        } else {
+          place = space.field_place(space.to_cells(point));
+          slope = space.field_share() / space.side() * space.cells_along(point, rays[r].direction);
+        }
         for (std::size_t axis = 0; axis < 3; ++axis) {
           points[h][axis] = static_cast<float>(place[static_cast<Eigen::Index>(axis)]);
           along[h][axis] = slope[static_cast<Eigen::Index>(axis)];

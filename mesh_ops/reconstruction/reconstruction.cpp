@@ -40,7 +40,7 @@ SceneFields hash_fields(const TrainingPlan& plan) {
   opacity.levels = plan.levels;
   opacity.log2_entries = plan.log2_entries;
   opacity.hidden = plan.hidden;
-  opacity.finest = 4 * plan.side;
+  opacity.finest = (plan.boxes > 0 ? 8 : 4) * plan.side;
   opacity.bias = -8;
   HashFieldOptions features = opacity;
   features.bias = 0;
@@ -54,7 +54,7 @@ Reconstruction::Reconstruction(const TrainingPlan& plan, TrainingViews views, co
       views_(std::move(views)),
       background_(background),
       fields_(std::move(fields)),
-      grid_(GridSpace(plan.kind, plan.side)),
+      grid_(GridSpace(plan.kind, plan.side, plan.boxes, plan.frustum)),
       decoder_(start_decoder(4 * plan.seed + 3)),
       cells_(grid_.space().cell_count()),
       inner_(cells_.size()),
@@ -70,6 +70,7 @@ Reconstruction::Reconstruction(const TrainingPlan& plan, TrainingViews views, co
     inner_[cell] = std::all_of(at.begin(), at.end(), [&](int i) { return i >= 1 && i <= plan.side - 2; }) ? 1 : 0;
   }
   active_ = inner_;
+  mean_brightness_ = views_.mean_brightness();
 }
 
 TrainingStage Reconstruction::stage() const {
@@ -157,6 +158,7 @@ double Reconstruction::soft_step() {
     batch.rays.push_back(views_.ray(pixel.photograph, pixel.x + 0.5, pixel.y + 0.5));
     color = views_.color(pixel);
   }
+  const Vec3 background = step_background(dice);
   batch.find_hits(grid_, active_, most);
   fields_.opacity->evaluate(batch.points, batch.opacities);
   WeightedHits kind{{batch.opacities.begin(), batch.opacities.end()}, std::vector<RayWeights>(count)};
@@ -174,11 +176,11 @@ double Reconstruction::soft_step() {
     for (std::size_t k = shown.first[r]; k < shown.first[r + 1]; ++k)
       colors[shown.hits[k] - first] = Eigen::Vector3f::Map(&shown.colors[3 * k]).cast<double>();
     const RayWeights& weights = kind.weights[r];
-    shown_colors[r] = ray_color(weights, colors, background_);
+    shown_colors[r] = ray_color(weights, colors, background);
     const Vec3 off = off_by(shown_colors[r], wanted[r], pixels[r]);
     errors[r] = off.squaredNorm() / 3;
     std::vector<double> slopes(hits);
-    ray_color_slopes({kind.opacities.data() + first, hits}, weights, colors, background_,
+    ray_color_slopes({kind.opacities.data() + first, hits}, weights, colors, background,
                      2 * off / (3 * static_cast<double>(count)), by_color, slopes);
     for (std::size_t k = shown.first[r]; k < shown.first[r + 1]; ++k)
       Eigen::Vector3f::Map(&color_slopes[3 * k]) = by_color[shown.hits[k] - first].cast<float>();
@@ -251,6 +253,15 @@ void Reconstruction::add_distortion(const RayBatch& batch, std::size_t ray, cons
              plan_.distortion / static_cast<double>(batch.rays.size()), by_weight);
   opacity_slopes({kind.opacities.data() + first, hits}, kind.weights[ray], by_weight, 0, by_opacity);
   for (std::size_t h = 0; h < hits; ++h) alpha_slopes[first + h] += static_cast<float>(by_opacity[h]);
+}
+
+// The colour behind everything. Real scenes have none: it changes between black and white from step to step, so that
+// surfaces become opaque.
+Vec3 Reconstruction::step_background(SplitMix64& dice) const {
+  if (plan_.kind == CaptureKind::object) return background_;
+  const double full = static_cast<double>(plan_.soft_steps) / 4,
+               share = std::min(1.0, static_cast<double>(steps_done_) / full), random = dice.below(2) == 0 ? 0 : 1;
+  return Vec3::Constant((1 - share) * mean_brightness_ + share * random);
 }
 
 // Steps of the opacity field, the vertices and the acceleration grid.

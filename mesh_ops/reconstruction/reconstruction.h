@@ -10,6 +10,10 @@
 
 namespace rebake {
 
+/// Axes of the directions that trained decoders take, for all kinds of captures: folders open without a word about
+/// them.
+inline constexpr Axes trained_axes = Axes::y_up;
+
 /// The two fields of a reconstruction.
 struct SceneFields {
   std::unique_ptr<SceneField> opacity;   ///< 1 output; starts near 3e-4
@@ -42,8 +46,6 @@ class Reconstruction {
   /// Per cell: 1 if it may hold surface.
   const std::vector<std::uint8_t>& active() const { return active_; }
   const SceneFields& fields() const { return fields_; }
-  /// Axes of the directions that the decoder takes.
-  Axes axes() const { return plan_.kind == CaptureKind::forward ? Axes::forward : Axes::y_up; }
   /// Relative standard deviation of the photographs' exposures, known from the middle of stage 1 on; 0 before.
   double exposure_spread() const { return exposure_spread_; }
   /// Gives each photograph a gain from the start; estimates replace it from the middle of stage 1 on.
@@ -69,6 +71,7 @@ class Reconstruction {
                        const std::vector<FieldPoint>& feature_points, const std::vector<std::uint32_t>& shown,
                        const std::vector<double>& shares, double slots, double rate);
   void set_active();
+  Vec3 step_background(SplitMix64& dice) const;
   void update_exposures();
   Vec3 off_by(const Vec3& shown, const Vec3& wanted, const TrainingViews::Pixel& pixel) const;
   void set_gains(const std::vector<Vec3>& gains);
@@ -77,6 +80,7 @@ class Reconstruction {
   TrainingPlan plan_;
   TrainingViews views_;
   Vec3 background_;
+  double mean_brightness_ = 0;
   SceneFields fields_;
   FreeGrid grid_;
   TrainedNetwork decoder_;

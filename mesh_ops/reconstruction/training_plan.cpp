@@ -36,7 +36,11 @@ TrainingPlan plan_for(CaptureKind kind, int side, std::size_t pixels, std::uint6
   plan.soft_steps += open_steps - plan.open_steps;
   plan.open_steps = open_steps;
   if (kind == CaptureKind::forward) plan.distortion = 0.01;
-  if (kind == CaptureKind::unbounded) plan.distortion = 0.001;
+  if (kind == CaptureKind::unbounded) {
+    plan.distortion = 0.001;
+    plan.boxes = std::min(65, side / 2 + 1);
+    plan.log2_entries += 1;  // the boxes fill half the fields' space
+  }
   return plan;
 }
 
@@ -79,8 +83,9 @@ std::vector<std::string> words_of(const TrainingPlan& plan) {
                   plan.levels, 1 << plan.log2_entries, plan.hidden)};
   lines.push_back(plan.distortion > 0 ? fmt::format("distortion loss: weight {}", plan.distortion)
                                       : "distortion loss: none, as published for objects");
-  lines.push_back(plan.kind == CaptureKind::unbounded ? "nested boxes: 65, for everything around the grid"
-                                                      : "nested boxes: none, only unbounded scenes need them");
+  lines.push_back(plan.boxes > 0
+                      ? fmt::format("nested boxes: {}, for everything around the grid (published: 65)", plan.boxes)
+                      : "nested boxes: none, only unbounded scenes need them");
   lines.push_back(plan.gains ? "exposures: a gain per photograph if backgrounds differ, or if gains explain errors in "
                                "the middle of stage 1"
                              : "exposures: no gains");

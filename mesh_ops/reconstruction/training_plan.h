@@ -13,6 +13,8 @@ struct TrainingPlan {
   CaptureKind kind = CaptureKind::object;
   Affine to_unit = Affine::Identity();  ///< similarity from the scene to the capture's normalised frame
   int side = 64;                        ///< cells per side of the grid (128)
+  int boxes = 0;                        ///< nested boxes around an unbounded scene's grid (65)
+  Frustum frustum{};                    ///< of a forward capture (slope 0.875, depths 1 to 25)
   std::uint64_t seed = 1;
 
   std::size_t open_steps = 1500;     ///< of stage 1, before empty cells are left out (50,000)

@@ -63,6 +63,14 @@ Vec3 TrainingViews::raw_color(const Pixel& pixel) const {
   return Vec3(at[0], at[1], at[2]) / 255;
 }
 
+double TrainingViews::mean_brightness() const {
+  double sum = 0;
+  for (const FitPhotograph& one : photographs_)
+    for (std::size_t p = 0; p < one.valid.size(); ++p)
+      if (one.valid[p] != 0) sum += (one.rgb[3 * p] + one.rgb[3 * p + 1] + one.rgb[3 * p + 2]) / (3 * 255.0);
+  return sum / static_cast<double>(ends_.back());
+}
+
 void TrainingViews::set_gain(std::size_t photograph, const Vec3& gain) {
   for (std::size_t channel = 0; channel < 3; ++channel)
     for (std::size_t byte = 0; byte < 256; ++byte) {

@@ -32,6 +32,8 @@ class TrainingViews {
   Vec3 color(const Pixel& pixel) const;
   /// Display colour of a pixel as it is in the photograph.
   Vec3 raw_color(const Pixel& pixel) const;
+  /// Mean of all channels of all valid pixels, 0 … 1.
+  double mean_brightness() const;
   /// Exposure and white balance of a photograph: its linear light is that of the scene times this. All 1 at first.
   void set_gain(std::size_t photograph, const Vec3& gain);
 

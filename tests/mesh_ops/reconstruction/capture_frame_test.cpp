@@ -64,3 +64,64 @@ TEST(CaptureFrame, APhotographIsEnoughAndNoneIsNot) {
   EXPECT_GT(half_of_cube(object_frame(ball_photographs(1, 48), Vec3::Ones(), 0)), 0.4);
   EXPECT_THROW(object_frame({}, Vec3::Ones(), 0), Error);
 }
+
+namespace {
+
+// Cameras on a square of side 0.4 that look along −z, turned and moved as a whole.
+std::vector<FitPhotograph> forward_photographs(const Affine& moved) {
+  std::vector<FitPhotograph> photographs = ball_photographs(9, 16);
+  for (int k = 0; k < 9; ++k) {
+    Camera& camera = photographs[static_cast<std::size_t>(k)].camera;
+    const Vec3 eye(0.2 * (k % 3 - 1), 0.2 * (k / 3 - 1), 0.1 * (k % 2));
+    camera.eye = moved * eye;
+    camera.target = moved * (eye - Vec3(0, 0, 5));
+    camera.up = moved.linear() * Vec3::UnitY();
+    camera.near_plane = 2;
+    camera.far_plane = 20;
+  }
+  return photographs;
+}
+
+}  // namespace
+
+TEST(CaptureFrame, ForwardCapturesLookAlongMinusZFromTheMeanPose) {
+  const Affine moved = Eigen::Translation3d(7, -3, 2) * Eigen::AngleAxisd(1.1, Vec3(1, 2, -1).normalized());
+  const auto photographs = forward_photographs(moved);
+  const CaptureFrame frame = forward_frame(photographs, 0, 0);
+  // Scaled by 4/3 / 2.
+  EXPECT_LT((frame.to_unit * (moved * Vec3(0, 0, 0.4 / 9)) - Vec3::Zero()).norm(), 1e-9);
+  EXPECT_LT((frame.to_unit * (moved * Vec3(0.6, 0.3, 0.4 / 9 - 2)) - Vec3(0.4, 0.2, -4.0 / 3)).norm(), 1e-9);
+  EXPECT_NEAR(frame.frustum.farthest, 1.1 * 20 * 2 / 3, 1e-9);
+  // All that photographs see from the nearest depth on lies in the grid.
+  const GridSpace space(CaptureKind::forward, 16, 0, frame.frustum);
+  for (const FitPhotograph& one : photographs)
+    for (const double depth : {2.2, 5.0, 15.0})
+      for (int corner = 0; corner < 4; ++corner) {
+        const double tangent = 0.999 * std::tan(one.camera.fov_degrees * std::numbers::pi / 360);
+        const Vec3 ray((corner % 2 * 2 - 1) * tangent, (corner / 2 * 2 - 1) * tangent, -1);
+        const Vec3 cells =
+            space.to_cells(frame.to_unit * (one.camera.eye + depth * world_to_camera(one.camera).transpose() * ray));
+        for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(cells[axis] >= 0 && cells[axis] <= 16) << cells.transpose();
+      }
+  EXPECT_THROW(forward_frame(ball_photographs(20, 8), 1, 2), Error);
+}
+
+TEST(CaptureFrame, DepthsThatNobodyStatesAreAssumedWithAWarning) {
+  auto photographs = forward_photographs(Affine::Identity());
+  for (FitPhotograph& one : photographs) one.camera.near_plane = one.camera.far_plane = 0;
+  EXPECT_NE(forward_frame(photographs, 0, 0).notes.front().find("give near and far"), std::string::npos);
+  EXPECT_EQ(forward_frame(photographs, 1, 30).notes.front().find("give near and far"), std::string::npos);
+}
+
+TEST(CaptureFrame, UnboundedScenesHaveTheCamerasInTheCube) {
+  const auto photographs = ball_photographs(20, 8);
+  const CaptureFrame frame = unbounded_frame(photographs);
+  double farthest = 0;
+  for (const FitPhotograph& one : photographs)
+    farthest = std::max(farthest, (frame.to_unit * one.camera.eye).cwiseAbs().maxCoeff());
+  EXPECT_NEAR(farthest, 1, 1e-12);
+  EXPECT_GT((frame.to_unit.linear() * Vec3::UnitY()).normalized().z(), 0.99);
+  auto same = photographs;
+  for (FitPhotograph& one : same) one.camera.eye = Vec3(1, 2, 3);
+  EXPECT_THROW(unbounded_frame(same), Error);
+}

@@ -217,3 +217,37 @@ TEST(FreeGrid, OffsetSlopesFollowTheSpace) {
     EXPECT_NEAR(double{slopes[3 * cell + axis]}, (at(step) - at(-step)) / (2 * step), 1e-4);
   }
 }
+
+TEST(FreeGrid, RaysLeaveEachNestedBoxOnceThroughASide) {
+  const GridSpace space(CaptureKind::unbounded, 8, 17);
+  EXPECT_NEAR(space.box_radius(0), 1, 1e-12);
+  EXPECT_NEAR(space.box_radius(16), 16, 0.01);
+  const FreeGrid grid{space};
+  const std::vector<std::uint8_t> none(space.cell_count());
+  std::size_t total = 0;
+  for (const GridRay& ray : grid_rays(CaptureKind::object, 100)) {
+    if (ray.origin.cwiseAbs().maxCoeff() > 1) continue;
+    std::vector<GridHit> hits;
+    intersect(grid, none, ray.origin, ray.direction, 10, hits);
+    total += hits.size();
+    for (std::size_t k = 0; k < hits.size(); ++k) {
+      const Vec3 point = ray.origin + hits[k].t * ray.direction;
+      const double radius = space.box_radius(static_cast<int>(hits[k].corners[0]));
+      EXPECT_NEAR(std::max(std::abs(point.x()), std::abs(point.y())), radius, 1e-9 * radius);
+      EXPECT_LT(std::abs(point.z()), radius);
+      EXPECT_EQ(hits[k].cell, GridHit::no_cell);
+      EXPECT_TRUE(k == 0 || hits[k].t > hits[k - 1].t);
+      // Boxes and the grid share the fields' unit cube.
+      const Vec3 place = space.box_place(static_cast<int>(hits[k].corners[0]), point);
+      EXPECT_GE(place.minCoeff(), -1e-9);
+      EXPECT_LE(place.maxCoeff(), 1 + 1e-9);
+    }
+    // Rays that are not steep leave all boxes.
+    const double across = std::max(std::abs(ray.direction.x()), std::abs(ray.direction.y()));
+    const bool flat = std::abs(ray.direction.z()) < 0.3 * across && std::abs(ray.origin.z()) < 0.3;
+    EXPECT_TRUE(!flat || hits.size() == 17U);
+  }
+  EXPECT_GT(total, 300U);
+  EXPECT_NEAR((space.field_place(Vec3(8, 0, 4)) - Vec3(0.75, 0.25, 0.5)).norm(), 0, 1e-12);
+  EXPECT_NEAR((space.box_place(0, Vec3(1, -1, 0)) - Vec3(0.75, 0.25, 0.5)).norm(), 0, 1e-12);
+}
