@@ -13,10 +13,10 @@ namespace rebake {
 
 /// Cameras of photographs, as people name them.
 struct PhotographSource {
-  std::filesystem::path path;    ///< camera file, or folder of a capture
-  std::string format;            ///< identifier of a camera format; empty: recognised
-  std::optional<WorldUp> world;  ///< axis that points up; nothing: as usual for the format
-  double scale = 1;              ///< factor of the cameras' positions
+  std::filesystem::path path;      ///< camera file, or folder of a capture
+  std::string format{};            ///< identifier of a camera format; empty: recognised
+  std::optional<WorldUp> world{};  ///< axis that points up; nothing: as usual for the format
+  double scale = 1;                ///< factor of the cameras' positions
 };
 
 /// The cameras of a source in Rebake's frame. Appends notes. Throws FileError.

@@ -15,7 +15,7 @@
 #include "mesh_ops/formats/cameras/photo_names.h"
 #include "mesh_ops/formats/cameras/photographs.h"
 #include "render/contact_sheet.h"
-#include "render/photograph.h"
+#include "render/photograph_set.h"
 #include "render/picture.h"
 
 namespace rebake {
@@ -71,6 +71,15 @@ void check_output(const fs::path& folder, const std::vector<std::string>& names,
     throw FileError(table, "exists and is not a table of this comparison; choose another folder");
 }
 
+// The camera files and the photographs.
+std::vector<fs::path> files_of(const fs::path& path, const std::string& format) {
+  std::vector<std::string> notes;
+  std::vector<fs::path> files = camera_format_for(path, format).files(path);
+  for (fs::path& file : named_photographs(path, read_cameras(path, format, {}, notes)))
+    files.push_back(std::move(file));
+  return files;
+}
+
 Image halved(const Image& image) {
   Image half{image.width / 2, image.height / 2, {}, {}};
   for (int y = 0; y < half.height; ++y)
@@ -117,22 +126,23 @@ Image sheet_of(std::vector<Row> rows, int count) {
 std::vector<fs::path> ComparePhotographsAction::input_files(const nlohmann::json& object) {
   const auto cameras = object.find("cameras");
   if (cameras == object.end() || !cameras->is_string()) return {};
-  const std::string path = cameras->get<std::string>();
-  std::vector<std::string> notes;
-  std::vector<fs::path> files = camera_format_for(path, "").files(path);
-  for (fs::path& file : named_photographs(path, read_cameras(path, "", {}, notes))) files.push_back(std::move(file));
-  return files;
+  const auto format = object.find("format");
+  return files_of(cameras->get<std::string>(), format == object.end() || !format->is_string() || *format == "auto"
+                                                   ? ""
+                                                   : format->get<std::string>());
 }
 
 void run(Session& session, const ComparePhotographsAction& action) {
   if (action.cameras.empty()) throw FieldError("cameras", "is empty");
+  if (!(std::isfinite(action.scale) && action.scale > 0)) throw FieldError("scale", "must be a number above 0");
   if (action.worst < 1 || action.worst > 100) throw FieldError("worst", "must lie between 1 and 100");
   if (action.min_psnr && std::isnan(*action.min_psnr)) throw FieldError("min_psnr", "must be a number (dB)");
   const Scene& scene = session.scene();
   std::vector<std::string> notes, dropped, masked;
-  const std::vector<PhotoCamera> cameras = read_cameras(action.cameras, "", {}, notes);
+  const std::vector<PhotoCamera> cameras =
+      read_cameras(PhotographSource{action.cameras, action.format.name, action.world, action.scale}, notes);
   const std::vector<Camera> views = views_of(cameras, dropped);
-  for (const fs::path& file : ComparePhotographsAction::input_files({{"cameras", action.cameras}}))
+  for (const fs::path& file : files_of(action.cameras, action.format.name))
     session.document.protect_file(file, "a file of the capture");
   for (const std::string& note : notes) session.say(fmt::format("warning: {}: {}", action.cameras, note));
   std::vector<std::string> names = photo_names(cameras);
@@ -215,6 +225,9 @@ REBAKE_DESCRIBE_ACTION(
       visit("cameras", action.cameras, Need::required,
             "camera file of the photographs, or the folder of a capture (transforms.json, COLMAP, poses_bounds.npy, "
             "camera_path.json)");
+      visit("format", action.format, Need::optional, "format of the camera file; auto: recognised");
+      visit("world", action.world, Need::optional, "axis that points up in the camera file, as for import_views");
+      visit("scale", action.scale, Need::optional, "factor of the cameras' positions");
       visit("out", action.out, Need::optional,
             "folder for a table and, per photograph, a picture of it, the scene and the error; default: none");
       visit("worst", action.worst, Need::optional, "number of photographs on the sheet worst.png");

@@ -2,6 +2,8 @@
 
 #include "editor/actions/action.h"
 #include "editor/actions/session.h"
+#include "editor/fields/values.h"
+#include "mesh_ops/scene/photo_camera.h"
 
 namespace rebake {
 
@@ -9,6 +11,9 @@ namespace rebake {
 struct ComparePhotographsAction {
   static constexpr const char* op = "compare_photographs";
   std::string cameras;             ///< camera file or folder of a capture
+  CameraFormatName format;         ///< empty: recognised
+  std::optional<WorldUp> world;    ///< as for import_views
+  double scale = 1;                ///< factor of the cameras' positions
   std::string out;                 ///< folder for the table and pictures; empty: none
   int worst = 8;                   ///< number of views on the contact sheet
   int samples = 4;                 ///< samples per pixel: 1, 4 or 16

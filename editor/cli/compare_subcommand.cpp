@@ -11,6 +11,7 @@
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 
 namespace rebake {
 
@@ -22,6 +23,7 @@ struct Comparison {
   double min_psnr = 0;
   bool json = false;
   ComparePhotographsAction photographs;
+  std::string world;  // empty: as usual for the format
   FolderOptions reading;
 };
 
@@ -56,6 +58,7 @@ void compare_with_photographs(const Comparison& options) {
   session.document = Document(std::move(opened.scene));
   session.document.protect_all(opened.sources);
   ComparePhotographsAction action = options.photographs;
+  if (!options.world.empty()) action.world = options.world == "y_up" ? WorldUp::y : WorldUp::z;
   if (options.min_psnr != 0) action.min_psnr = options.min_psnr;
   run(session, action);
   if (session.below_requested_psnr) throw ExitWith{3};
@@ -77,6 +80,11 @@ void describe_compare(SubcommandDescription& command) {
                  "compare the scene with the photographs of this camera file or capture", "CAMERAS");
   command.option("-o,--out", options->photographs.out,
                  "photos: folder for a table and a picture of each photograph, the scene and the error", "FOLDER");
+  command.option("--scale", options->photographs.scale, "photos: factor of the cameras' positions", "FACTOR [1]");
+  command.option("--world", options->world, "photos: axis that points up in the camera file", "y_up|z_up")
+      .one_of(std::vector<std::string>{"y_up", "z_up"});
+  command.option("--camera-format", options->photographs.format.name, "photos: format of the camera file", "FORMAT")
+      .one_of(camera_format_names());
   command.option("--worst", options->photographs.worst, "photos: number of photographs on the sheet worst.png",
                  "N [8]");
   command.option("--samples", options->photographs.samples, "photos: samples per pixel", "1|4|16 [4]");

@@ -9,13 +9,14 @@
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
 #include "editor/studies/default_scene.h"
+#include "editor/training/capture.h"
 #include "mesh_ops/base/error.h"
 
 namespace rebake {
 
 void describe_study(SubcommandDescription& command) {
   struct Options {
-    std::string name, out;
+    std::string name, out, photographs;
     std::vector<std::string> scenes;
     int frames = 9;
     FolderOptions reading;
@@ -29,6 +30,8 @@ void describe_study(SubcommandDescription& command) {
   command.option("-o,--out", options->out, "folder to write to", "FOLDER").required();
   command.option("--scene", options->scenes, "scenes to measure", "FOLDER|SCENE|PROJECT... [the sample ficus]");
   command.option("--frames", options->frames, "timed frames per variant", "N [9]").between(1, 1000);
+  command.option("--photos", options->photographs,
+                 "training: photographs of the scene, as for train; default: pictures of it", "CAMERAS");
   options->view.add_to(command);
   options->reading.add_to(command);
   command.does([options] {
@@ -38,14 +41,17 @@ void describe_study(SubcommandDescription& command) {
       auto [scene, sources] = load_scenes(options->scenes, options->reading, progress_bar());
       options->view.set_background(scene);
       options->view.protect_files(sources);
+      if (!options->photographs.empty())
+        for (const auto& file : files_of_capture({options->photographs}, {}))
+          sources.add_file(file, "a file of the capture");
       prepare_study_folder(study, options->out, sources);
       std::unique_ptr<Renderer> renderer;
       const auto on_demand = [&]() -> Renderer& {
         if (!renderer) renderer = std::make_unique<Renderer>();
         return *renderer;
       };
-      const StudyTable table =
-          study.run({on_demand, scene, options->view.view(scene), options->frames, progress_bar()});
+      const StudyTable table = study.run(
+          {on_demand, scene, options->view.view(scene), options->frames, progress_bar(), options->photographs});
       clear_progress_bar();
       std::size_t width = 6;
       for (const StudyTable::Row& row : table.rows) width = std::max(width, row.choice.size());

@@ -33,6 +33,7 @@ struct StudyInput {
   View view;
   int frames;  ///< number of timed frames per choice; the median is reported
   Progress progress;
+  std::string photographs = {};  ///< camera file of photographs of the scene; empty: pictures of it
 };
 
 /// A subject of `rebake study`.
@@ -58,6 +59,7 @@ StudyTable study_colors(const StudyInput& input);
 StudyTable study_fill(const StudyInput& input);
 StudyTable study_filtering(const StudyInput& input);
 StudyTable study_publish(const StudyInput& input);
+StudyTable study_training(const StudyInput& input);
 
 /// All studies, in the order of `rebake study --help`.
 inline constexpr Study study_table[] = {
@@ -76,6 +78,7 @@ inline constexpr Study study_table[] = {
     {"colors", "matching of two captures' colours: exposure, samples and error", study_colors},
     {"filtering", "linear filtering by finer textures: memory, error of colours, frame time", study_filtering},
     {"publish", "web pages: position bits, texture coding, moving resolution", study_publish},
+    {"training", "training from photographs: steps, grid size, losses; time, size and error", study_training},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
 

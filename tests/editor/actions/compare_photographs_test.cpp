@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "mesh_ops/base/files.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/script_fixture.h"
@@ -57,6 +59,26 @@ TEST_F(ComparePhotographs, KeepsFilesOfOthersAndTheCapture) {
   EXPECT_NE(said().find("1 of 2 photographs are missing, the first is \"b.png\""), std::string::npos);
   fs::remove(at("cap/a.png"));
   expect_error(compare_ + "}", "none of its photographs exists and shows something");
+}
+
+TEST_F(ComparePhotographs, CamerasOfOtherScaleAndWorldAreBroughtToTheScene) {
+  // The same cameras, at half the scale and with another axis up.
+  auto cameras = nlohmann::json::parse(read_file(at("cap/transforms.json")));
+  for (auto& frame : cameras["frames"]) {
+    auto& pose = frame["transform_matrix"];
+    for (int row = 0; row < 3; ++row) pose[row][3] = pose[row][3].get<double>() / 2;
+    // (x, y, z) of a file with z up is (x, z, −y) with y up.
+    const auto second = pose[1];
+    pose[1] = pose[2];
+    for (int column = 0; column < 4; ++column) pose[2][column] = -second[column].get<double>();
+  }
+  write_text(at("cap/transforms.json"), cameras.dump());
+  run(compare_ + R"(, "min_psnr": 45})");
+  EXPECT_TRUE(session.below_requested_psnr);
+  session.below_requested_psnr = false;
+  run(compare_ + R"(, "min_psnr": 45, "scale": 2, "world": "y_up", "format": "transforms"})");
+  EXPECT_FALSE(session.below_requested_psnr);
+  expect_error(compare_ + R"(, "scale": 0})", "scale");
 }
 
 }  // namespace
