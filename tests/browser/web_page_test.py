@@ -104,6 +104,18 @@ class WebPage(unittest.TestCase):
     def test_several_decoders_and_orientations(self):
         self.expect_page_of(self.scene(FICUS, KETTLE, MOVED))
 
+    def test_trained_scenes(self):
+        photographs, trained = self.at / "photographs", self.at / "trained"
+        photograph = Path(REBAKE).with_name("rebake_photograph")
+        subprocess.run([photograph, "kettle", "-o", photographs, "--views", "24", "--held-out", "4", "--side", "48"], check=True,
+                       stdout=subprocess.DEVNULL)
+        code, text = rebake("train", photographs, "-o", trained, "--side", "24", "--steps", "800")
+        self.assertEqual(code, 0, text)
+        self.expect_page_of(trained)
+        self.expect_page_of(self.scene({"op": "import", "path": str(trained), "as": "trained"}, FICUS,
+                                       {"op": "transform", "node": "trained", "translate": [0.9, 0, 0]},
+                                       {"op": "bend", "node": "trained", "axis": [0, 1, 0], "degrees": 30}), psnr=45)
+
     def test_five_decoders(self):
         copies = []
         for k in range(4):
