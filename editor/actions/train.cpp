@@ -31,6 +31,12 @@ ReconstructionOptions options_of(const TrainAction& action) {
   options.near = action.near;
   options.far = action.far;
   options.seed = action.seed;
+  if (action.fields != "hash" && action.fields != "mlp")
+    throw FieldError("fields", "\"" + action.fields + "\" is not known (known: hash, mlp)");
+  options.mlp = action.fields == "mlp";
+  options.width = action.width;
+  options.octaves = action.octaves;
+  options.layers = action.layers;
   options.gains = !action.one_exposure;
   options.four_rays = !action.one_ray;
   options.samples = action.samples;
@@ -162,6 +168,12 @@ REBAKE_DESCRIBE_ACTION(
       visit("far", action.far, Need::optional,
             "forward: farthest depth; default: as the camera file states, else assumed");
       visit("seed", action.seed, Need::optional, "start of the random numbers");
+      visit("fields", action.fields, Need::optional,
+            "hash: hash grids; mlp: the published networks, by LibTorch, on a graphics card if LibTorch has CUDA "
+            "(untested)");
+      visit("width", action.width, Need::optional, "mlp: neurons per layer; published: 384");
+      visit("octaves", action.octaves, Need::optional, "mlp: octaves of sines that encode positions; published: 10");
+      visit("layers", action.layers, Need::optional, "mlp: number of layers; published: 8");
       visit("format", action.format, Need::optional, "format of the camera file; auto: recognised");
       visit("world", action.world, Need::optional, "axis that points up in the camera file, as for import_views");
       visit("scale", action.scale, Need::optional, "factor of the cameras' positions");

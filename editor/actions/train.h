@@ -20,15 +20,17 @@ struct TrainAction {
   std::optional<double> near;     ///< forward: nearest depth
   std::optional<double> far;      ///< forward: farthest depth
   int seed = 1;
-  CameraFormatName format;       ///< empty: recognised
-  std::optional<WorldUp> world;  ///< as for import_views
-  double scale = 1;              ///< factor of the cameras' positions
-  std::string held_out;          ///< camera file of photographs to judge the result by
-  int hold_out = 8;              ///< every n-th photograph judges the result; 0: none
-  bool one_exposure = false;     ///< no gains per photograph
-  bool one_ray = false;          ///< one ray per pixel in stage 2
-  int samples = 16;              ///< texels between the corners of a quad
-  bool fresh = false;            ///< starts again instead of going on from a checkpoint
+  std::string fields = "hash";              ///< hash or mlp
+  int width = 64, octaves = 6, layers = 4;  ///< mlp: of the published networks
+  CameraFormatName format;                  ///< empty: recognised
+  std::optional<WorldUp> world;             ///< as for import_views
+  double scale = 1;                         ///< factor of the cameras' positions
+  std::string held_out;                     ///< camera file of photographs to judge the result by
+  int hold_out = 8;                         ///< every n-th photograph judges the result; 0: none
+  bool one_exposure = false;                ///< no gains per photograph
+  bool one_ray = false;                     ///< one ray per pixel in stage 2
+  int samples = 16;                         ///< texels between the corners of a quad
+  bool fresh = false;                       ///< starts again instead of going on from a checkpoint
 
   /// The camera files and the photographs.
   static std::vector<std::filesystem::path> input_files(const nlohmann::json& object);

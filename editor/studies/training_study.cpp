@@ -103,7 +103,7 @@ Scene trained_scene(const Capture& capture, const TrainingChoice& choice, const 
     plan.binary_steps = 0;
   }
   Reconstruction training(plan, TrainingViews(capture.training, plan.to_unit, trained_axes), frame.background,
-                          hash_fields(plan));
+                          fields_of(plan));
   while (training.stage() != TrainingStage::done) {
     training.step();
     progress.at("training, " + choice.name,

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/reconstruction/mlp_field.h"
 
 namespace rebake {
 
@@ -27,6 +28,10 @@ void check(const ReconstructionOptions& options) {
   if (options.seed < 0) throw FieldError("seed", "must be at least 0");
   if (options.held_out.every < 0 || options.held_out.every == 1)
     throw FieldError("hold_out", "must be 0 (none) or at least 2");
+  if (options.width < 4 || options.width > 1024) throw FieldError("width", "must lie between 4 and 1024 neurons");
+  if (options.octaves < 1 || options.octaves > 16) throw FieldError("octaves", "must lie between 1 and 16");
+  if (options.layers < 1 || options.layers > 16) throw FieldError("layers", "must lie between 1 and 16");
+  if (options.mlp) require_mlp_fields();
   if (options.samples < 1 || options.samples > 64) throw FieldError("samples", "must lie between 1 and 64");
 }
 
@@ -35,6 +40,7 @@ nlohmann::json identity_of(const ReconstructionOptions& options) {
                              {"seed", options.seed},
                              {"exposures", options.gains},
                              {"four_rays", options.four_rays}};
+  if (options.mlp) identity["networks"] = {options.width, options.octaves, options.layers};
   if (options.minutes) identity["minutes"] = *options.minutes;
   if (options.steps) identity["steps"] = *options.steps;
   if (options.side) identity["side"] = *options.side;

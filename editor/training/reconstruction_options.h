@@ -20,10 +20,12 @@ struct ReconstructionOptions {
   std::optional<double> near;     ///< forward-facing captures: nearest depth; nothing: as the camera file states
   std::optional<double> far;      ///< as `near`: farthest depth
   int seed = 1;
-  bool gains = true;      ///< gives photographs gains if their exposures differ
-  bool four_rays = true;  ///< see TrainingPlan
-  int samples = 16;       ///< texels between the corners of a quad
-  bool fresh = false;     ///< starts again instead of going on from a checkpoint
+  bool mlp = false;                         ///< the published networks instead of hash grids
+  int width = 64, octaves = 6, layers = 4;  ///< of these
+  bool gains = true;                        ///< gives photographs gains if their exposures differ
+  bool four_rays = true;                    ///< see TrainingPlan
+  int samples = 16;                         ///< texels between the corners of a quad
+  bool fresh = false;                       ///< starts again instead of going on from a checkpoint
 };
 
 /// Throws FieldError.

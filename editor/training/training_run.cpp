@@ -75,6 +75,10 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
   plan.frustum = frame_.frustum;
   plan.gains = options_.gains && capture_.training.size() > 1;
   plan.four_rays = options_.four_rays;
+  plan.mlp = options_.mlp;
+  plan.width = options_.width;
+  plan.octaves = options_.octaves;
+  plan.layers = options_.layers;
   nlohmann::json head;
   std::optional<std::string> state;
   if (!options_.fresh) state = read_checkpoint(work_ / checkpoint_name, head);
@@ -92,7 +96,7 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
   }
   for (const std::string& line : words_of(plan)) say_("plan: " + line);
   TrainingViews views(capture_.training, plan.to_unit, trained_axes);
-  reconstruction_ = std::make_unique<Reconstruction>(plan, std::move(views), frame_.background, hash_fields(plan));
+  reconstruction_ = std::make_unique<Reconstruction>(plan, std::move(views), frame_.background, fields_of(plan));
   if (plan.gains && !frame_.gains.empty()) reconstruction_->start_with_gains(frame_.gains);
   if (!state) return;
   reconstruction_->load(*state);
@@ -107,7 +111,7 @@ void TrainingRun::plan_steps(TrainingPlan& plan, const Progress& progress) {
   if (!options_.minutes) return;
   progress.at("measuring the time of a step", 0);
   Reconstruction trial(plan, TrainingViews(capture_.training, plan.to_unit, trained_axes), frame_.background,
-                       hash_fields(plan));
+                       fields_of(plan));
   std::vector<double> times;
   constexpr int trials = 7;
   for (int k = 0; k < trials; ++k) {

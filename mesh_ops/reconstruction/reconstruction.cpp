@@ -9,6 +9,7 @@
 
 #include "mesh_ops/reconstruction/grid_losses.h"
 #include "mesh_ops/reconstruction/hash_field.h"
+#include "mesh_ops/reconstruction/mlp_field.h"
 
 namespace rebake {
 
@@ -35,7 +36,21 @@ FeatureNetwork start_decoder(std::uint64_t seed) {
 
 }  // namespace
 
-SceneFields hash_fields(const TrainingPlan& plan) {
+namespace {
+
+SceneFields mlp_fields(const TrainingPlan& plan) {
+  MlpFieldSizes opacity{1, plan.width, plan.octaves, plan.layers, plan.boxes > 0 ? 2.0F : 1.0F, -8, 4 * plan.seed + 1};
+  MlpFieldSizes features = opacity;
+  features.outputs = texel_features;
+  features.bias = 0;
+  ++features.seed;
+  return {std::make_unique<MlpField>(opacity), std::make_unique<MlpField>(features)};
+}
+
+}  // namespace
+
+SceneFields fields_of(const TrainingPlan& plan) {
+  if (plan.mlp) return mlp_fields(plan);
   HashFieldOptions opacity;
   opacity.levels = plan.levels;
   opacity.log2_entries = plan.log2_entries;

@@ -19,8 +19,8 @@ struct SceneFields {
   std::unique_ptr<SceneField> opacity;   ///< 1 output; starts near 3e-4
   std::unique_ptr<SceneField> features;  ///< 8 outputs
 };
-/// Fields of hash grids, with sizes that suit the plan.
-SceneFields hash_fields(const TrainingPlan& plan);
+/// The fields of a plan: hash grids, or the published networks. Throws Error if those need a module that is missing.
+SceneFields fields_of(const TrainingPlan& plan);
 
 /// A scene in training (MobileNeRF, stages 1 and 2): a grid of free vertices, fields of opacity and features on its
 /// triangles, a decoder, and an acceleration grid that tells empty cells. Deterministic at any number of threads.

@@ -78,9 +78,14 @@ std::vector<std::string> words_of(const TrainingPlan& plan) {
                   "pixels with four rays each)",
                   plan.binary_steps, plan.feature_steps, plan.pixels,
                   plan.four_rays ? "four rays each" : "one ray each"),
-      fmt::format("fields: hash grids of {} levels with up to {} entries and networks of 2 × {} neurons (published: "
-                  "networks of 8 × 384 neurons)",
-                  plan.levels, 1 << plan.log2_entries, plan.hidden)};
+      plan.mlp
+          ? fmt::format("fields: the published networks with {} layers of {} neurons and {} octaves (published: 8 of "
+                        "384 and 10)",
+                        plan.layers, plan.width, plan.octaves)
+          : fmt::format(
+                "fields: hash grids of {} levels with up to {} entries and networks of 2 × {} neurons (published: "
+                "networks of 8 × 384 neurons)",
+                plan.levels, 1 << plan.log2_entries, plan.hidden)};
   lines.push_back(plan.distortion > 0 ? fmt::format("distortion loss: weight {}", plan.distortion)
                                       : "distortion loss: none, as published for objects");
   lines.push_back(plan.boxes > 0

@@ -29,9 +29,11 @@ struct TrainingPlan {
   bool gains = true;          ///< photographs get gains if their exposures differ
   bool four_rays = true;      ///< stage 2 averages four rays per pixel
 
-  std::size_t levels = 8;   ///< of the hash grids
-  int log2_entries = 17;    ///< most entries per level
-  std::size_t hidden = 32;  ///< width of the fields' networks
+  bool mlp = false;                         ///< the published networks instead of hash grids
+  int width = 64, octaves = 6, layers = 4;  ///< of these (384, 10 and 8)
+  std::size_t levels = 8;                   ///< of the hash grids
+  int log2_entries = 17;                    ///< most entries per level
+  std::size_t hidden = 32;                  ///< width of the fields' networks
 
   std::size_t steps() const { return soft_steps + binary_steps + feature_steps; }
 };

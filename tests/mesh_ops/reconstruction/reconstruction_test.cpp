@@ -33,7 +33,7 @@ TrainingPlan tiny_plan(int side, std::uint64_t seed) {
 }
 
 Reconstruction begin_training(const TrainingPlan& plan, const std::vector<FitPhotograph>& photographs) {
-  return {plan, TrainingViews(photographs, plan.to_unit, Axes::y_up), Vec3::Ones(), hash_fields(plan)};
+  return {plan, TrainingViews(photographs, plan.to_unit, Axes::y_up), Vec3::Ones(), fields_of(plan)};
 }
 
 void finish_training(Reconstruction& training) {
