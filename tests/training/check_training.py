@@ -14,19 +14,48 @@ CAPTURES = [
     ("ficus", "object", 128, 100, ["--steps", "3500"], 24, True),
     ("kettle", "object", 128, 100, ["--steps", "3500"], 24, True),
     ("shelf", "forward", 64, 12, ["--steps", "2500", "--near", "1.7", "--far", "4"], 20, True),
+    ("blend", "object", 64, 48, ["--steps", "3000"], 24, False),
     ("courtyard", "unbounded", 64, 60, ["--steps", "2500", "--side", "48"], 20, True),
 ]
 
 
+# A scene for Blender: a head on a disk.
+BLEND = """
+import bpy
+bpy.ops.object.select_all(action="SELECT")
+bpy.ops.object.delete()
+bpy.ops.mesh.primitive_monkey_add(size=1.6)
+bpy.ops.mesh.primitive_cylinder_add(radius=0.9, depth=0.15, location=(0, 0, -0.95))
+for k, color in enumerate([(0.7, 0.25, 0.1, 1), (0.15, 0.3, 0.6, 1)]):
+    material = bpy.data.materials.new(str(k))
+    material.use_nodes = True
+    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = color
+    bpy.data.objects[("Suzanne", "Cylinder")[k]].data.materials.append(material)
+bpy.ops.object.light_add(type="SUN", rotation=(0.7, 0.3, 0))
+bpy.ops.wm.save_as_mainfile(filepath="OUT")
+"""
+
+
+def photograph(program, model, side, views, out):
+    """Photographs of a procedural sample, or of the scene above by Blender."""
+    words = ["-o", out, "--views", str(views), "--held-out", "12", "--side", str(side)]
+    if model != "blend":
+        return subprocess.run([os.path.join(os.path.dirname(program), "rebake_photograph"), model, *words], check=True,
+                              stdout=subprocess.DEVNULL)
+    script = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../samples/photograph_blend.py")
+    subprocess.run(["blender", "--background", "--python-exit-code", "1", "--python-expr", BLEND.replace("OUT", out + ".blend")],
+                   check=True, stdout=subprocess.DEVNULL)
+    return subprocess.run(["blender", "--background", out + ".blend", "--python-exit-code", "1", "--python", script, "--", *words],
+                          check=True, stdout=subprocess.DEVNULL)
+
+
 def main():
     program = os.path.abspath(sys.argv[1])
-    photograph = os.path.join(os.path.dirname(program), "rebake_photograph")
     failures = []
     with tempfile.TemporaryDirectory() as folder:
         for model, kind, side, views, options, least, beats_nearest in CAPTURES:
             capture, out = os.path.join(folder, model), os.path.join(folder, model + "-trained")
-            subprocess.run([photograph, model, "-o", capture, "--views", str(views), "--held-out", "12", "--side", str(side)],
-                           check=True, stdout=subprocess.DEVNULL)
+            photograph(program, model, side, views, capture)
             subprocess.run([program, "train", capture, "-o", out, "--kind", kind, *options], check=True)
             with open(os.path.join(out, "training.json")) as file:
                 report = json.load(file)
