@@ -55,7 +55,8 @@ void add_box_quads(const Reconstruction& trained, int samples, std::vector<Baked
           BakedQuad quad;
           quad.box = box;
           for (int corner = 0; corner < 4; ++corner) {
-            const double along = -radius + step * (column + corner % 2), up = -radius + step * (row + corner / 2),
+            const int right = column + corner % 2, above = row + corner / 2;
+            const double along = -radius + step * right, up = -radius + step * above,
                          out = side % 2 == 0 ? radius : -radius;
             quad.corners[static_cast<std::size_t>(corner)] = side < 2 ? Vec3(out, along, up) : Vec3(along, out, up);
           }
@@ -97,8 +98,8 @@ class TexelSampler {
   /// The place of a texel of a quad. False if it cannot be opaque: in cells without surface.
   bool place(const BakedQuad& quad, std::size_t texel, FieldPoint& point) const {
     const GridSpace& space = trained_.grid().space();
-    const double column = static_cast<double>(texel % static_cast<std::size_t>(side_)),
-                 row = static_cast<double>(texel / static_cast<std::size_t>(side_));
+    const std::size_t side = static_cast<std::size_t>(side_), row_number = texel / side;
+    const auto column = static_cast<double>(texel % side), row = static_cast<double>(row_number);
     const Vec3 at = place_of(quad.corners, column / (side_ - 1), row / (side_ - 1));
     if (quad.box >= 0) {
       point = field_point(space.box_place(quad.box, at));
@@ -171,12 +172,14 @@ std::vector<TextureSet> sets_of(const Reconstruction& trained, const std::vector
     std::vector<Vec2> uvs;
     std::vector<Face> faces;
     for (std::size_t q = 0; q < count; ++q) {
-      const double left = static_cast<double>(q % per_row) * patch, top = static_cast<double>(q / per_row) * patch;
+      const std::size_t row = q / per_row;
+      const double left = static_cast<double>(q % per_row) * patch, top = static_cast<double>(row) * patch;
       const auto first = static_cast<std::uint32_t>(positions.size());
       for (std::size_t corner = 0; corner < 4; ++corner) {
+        const std::size_t down = corner / 2;
         positions.emplace_back(to_scene * quads[begin + q].corners[corner]);
         uvs.emplace_back((left + 0.5 + static_cast<double>(corner % 2) * (patch - 1)) / width,
-                         1 - (top + 0.5 + static_cast<double>(corner / 2) * (patch - 1)) / height);
+                         1 - (top + 0.5 + static_cast<double>(down) * (patch - 1)) / height);
       }
       for (std::size_t half = 0; half < 2; ++half)
         if (triangles[begin + q][half]) {

@@ -252,7 +252,8 @@ CaptureFrame forward_frame(const std::vector<FitPhotograph>& photographs, double
                  aspect = static_cast<double>(one.width) / one.height;
     const Mat3 to_frame = turn * world_to_camera(one.camera).transpose();
     for (int corner = 0; corner < 4; ++corner) {
-      const Vec3 ray = to_frame * Vec3((corner % 2 * 2 - 1) * tangent * aspect, (corner / 2 * 2 - 1) * tangent, -1);
+      const int right = corner % 2 * 2 - 1, above = corner / 2 * 2 - 1;
+      const Vec3 ray = to_frame * Vec3(right * tangent * aspect, above * tangent, -1);
       // Where the corner of the picture is at the nearest depth, and in the distance.
       for (const double depth : {nearest, 1e6}) {
         const Vec3 point = place + (depth + place.z()) / -ray.z() * ray;

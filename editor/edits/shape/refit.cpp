@@ -8,6 +8,7 @@
 #include <map>
 
 #include "editor/edits/describe_edit.h"
+#include "editor/edits/select/selecting.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
