@@ -52,7 +52,9 @@ nlohmann::json judge(Session& session, const TrainingRun& run, const Scene& scen
   if (capture.held_out.empty()) return nullptr;
   const bool gain = run.reconstruction().has_gains();
   const TrainingBaselines simple = baselines(capture);
+  const Vec3& background = run.frame().background;
   nlohmann::json report = {{"photographs", capture.held_out.size()},
+                           {"background", {number(background.x()), number(background.y()), number(background.z())}},
                            {"mean colour PSNR dB", number(simple.mean_color_db)},
                            {"white picture PSNR dB", number(simple.white_db)},
                            {"nearest photograph PSNR dB", number(simple.nearest_photograph_db)}};
@@ -71,6 +73,11 @@ nlohmann::json judge(Session& session, const TrainingRun& run, const Scene& scen
     session.say(fmt::format("{} held-out photographs{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f} ({})",
                             capture.held_out.size(), gain ? " after a gain each" : "", errors.psnr_db, errors.ssim,
                             errors.flip, beside));
+    constexpr double better = 1;
+    if (errors.psnr_db < better + std::max(simple.mean_color_db, simple.nearest_photograph_db))
+      session.say(
+          "warning: the scene is hardly better than one colour or the nearest photograph: train longer, or check "
+          "that poses, world, scale and kind belong to the photographs");
   } catch (const DeviceError& error) {
     session.say(fmt::format("warning: the scene was not compared with photographs: {}", error.what()));
   }
@@ -91,7 +98,6 @@ nlohmann::json report_of(const TrainingRun& run, const TrainAction& action, cons
                            {"plan", words_of(run.reconstruction().plan())},
                            {"frame", run.frame().notes},
                            {"notes", run.capture().notes},
-                           {"exposures differ by", number(run.reconstruction().exposure_spread())},
                            {"triangles", object.triangle_count()},
                            {"opaque texels", counts.opaque_texels},
                            {"quads", {{"opaque", counts.quads}, {"visible", counts.visible_quads}}},
@@ -125,6 +131,7 @@ void run(Session& session, const TrainAction& action) {
   TrainingRun training(options, std::move(capture), Scene{}.background, work, session.say, session.progress);
   session.say(fmt::format("progress: a picture and a table in {}", work.string()));
   training.train(session.progress);
+  session.say("trained; if the rest is stopped, the same command goes on from here");
 
   BakeReconstructionOptions baking;
   baking.samples = action.samples;
@@ -136,16 +143,19 @@ void run(Session& session, const TrainAction& action) {
   scene.background = training.frame().background;
   ExportOptions exporting;
   exporting.sources = sources;
-  export_scene(scene, out, exporting, session.progress);
+  const ExportReport exported = export_scene(scene, out, exporting, session.progress);
+  for (const std::string& note : exported.notes) session.say("note: " + note);
+  if (training.frame().background != Scene{}.background)
+    session.say("note: the folder has no background; viewers show the scene on white, photographs had another");
   session.wrote_scene(action.out, true);
   session.say(fmt::format("stage 3: {} triangles and {} opaque texels of {} visible quads (of {}), after {}",
                           node.object->triangle_count(), counts.opaque_texels, counts.visible_quads, counts.quads,
                           duration_text(training.seconds())));
   nlohmann::json report = report_of(training, action, counts, *node.object);
   report["held out"] = judge(session, training, scene);
-  write_file_atomically(out / "training.json", report.dump(1) + "\n", sources);
+  write_file_atomically(out / "rebake_training.json", report.dump(1) + "\n", sources);
   training.remove_work_files();
-  session.say(fmt::format("wrote the scene to {}; its training.json has the plan and all figures", action.out));
+  session.say(fmt::format("wrote the scene to {}; its rebake_training.json has the plan and all figures", action.out));
 }
 
 REBAKE_DESCRIBE_ACTION(
@@ -160,7 +170,8 @@ REBAKE_DESCRIBE_ACTION(
       visit(
           "minutes", action.minutes, Need::optional,
           "about how long it may take, by the time of a step on this machine; repeat it with steps for the same bytes");
-      visit("steps", action.steps, Need::optional, "number of steps; default: 17000");
+      visit("steps", action.steps, Need::optional,
+            "number of steps; default: about 17000, more for large grids and few photographs");
       visit("side", action.side, Need::optional,
             "cells per side of the grid, 16 to 256; default: by the photographs, 32 to 128");
       visit("near", action.near, Need::optional,

@@ -64,7 +64,7 @@ Capture read_capture(const PhotographSource& source, const HeldOut& held_out, co
       if (!camera.eye.allFinite() || !camera.axes.allFinite())
         throw FileError(from.path, "the camera of \"" + camera.name + "\" has a position that is not a number");
     for (const std::string& note : notes)
-      capture.notes.push_back(fmt::format("warning: {}: {}", from.path.string(), note));
+      capture.notes.push_back(fmt::format("note: {}: {}", from.path.string(), note));
     PhotographSet set = read_photographs(from, cameras, background, progress);
     add_notes(capture, set, cameras.size(), which);
     return set;

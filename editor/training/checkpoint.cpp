@@ -18,8 +18,10 @@ constexpr int version = 1;
 }  // namespace
 
 void write_checkpoint(const fs::path& file, const nlohmann::json& head, const std::string& state) {
-  const nlohmann::json line = {
-      {"checkpoint", mark}, {"version", version}, {"head", head}, {"hash", hash_text(content_hash(state))}};
+  const nlohmann::json line = {{"checkpoint", mark},
+                               {"version", version},
+                               {"head", head},
+                               {"hash", hash_text(content_hash(head.dump() + state))}};
   write_file_atomically(file, line.dump() + "\n" + state, {});
 }
 
@@ -34,10 +36,14 @@ std::optional<std::string> read_checkpoint(const fs::path& file, nlohmann::json&
   nlohmann::json line;
   if (end != std::string::npos)
     line = nlohmann::json::parse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
-  if (!line.is_object() || line.value("checkpoint", "") != mark) throw damaged("is no checkpoint of a training");
-  if (line.value("version", 0) != version) throw damaged("is a checkpoint of another version of Rebake");
+  if (!line.is_object() || !line.contains("checkpoint") || line["checkpoint"] != mark)
+    throw damaged("is no checkpoint of a training");
+  if (!line.contains("version") || line["version"] != version)
+    throw damaged("is a checkpoint of another version of Rebake");
   bytes.erase(0, end + 1);
-  if (hash_text(content_hash(bytes)) != line.value("hash", "")) throw damaged("is damaged");
+  if (!line.contains("head") || !line.contains("hash") ||
+      line["hash"] != hash_text(content_hash(line["head"].dump() + bytes)))
+    throw damaged("is damaged");
   head = line["head"];
   return bytes;
 }

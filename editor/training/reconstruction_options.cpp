@@ -35,15 +35,17 @@ void check(const ReconstructionOptions& options) {
   if (options.samples < 1 || options.samples > 64) throw FieldError("samples", "must lie between 1 and 64");
 }
 
-nlohmann::json identity_of(const ReconstructionOptions& options) {
-  nlohmann::json identity = {{"kind", static_cast<int>(options.kind)},
+nlohmann::json identity_of(const ReconstructionOptions& options, int side) {
+  constexpr int recipe = 1;  // grows when the same options train otherwise
+  nlohmann::json identity = {{"recipe", recipe},
+                             {"side", side},
+                             {"kind", static_cast<int>(options.kind)},
                              {"seed", options.seed},
                              {"exposures", options.gains},
                              {"four_rays", options.four_rays}};
   if (options.mlp) identity["networks"] = {options.width, options.octaves, options.layers};
   if (options.minutes) identity["minutes"] = *options.minutes;
   if (options.steps) identity["steps"] = *options.steps;
-  if (options.side) identity["side"] = *options.side;
   if (options.near) identity["near"] = *options.near;
   if (options.far) identity["far"] = *options.far;
   return identity;

@@ -31,7 +31,7 @@ struct ReconstructionOptions {
 /// Throws FieldError.
 void check(const ReconstructionOptions& options);
 
-/// The choices that must be the same to go on from a checkpoint.
-nlohmann::json identity_of(const ReconstructionOptions& options);
+/// The choices that must be the same to go on from a checkpoint. `side`: cells per side of the grid.
+nlohmann::json identity_of(const ReconstructionOptions& options, int side);
 
 }  // namespace rebake

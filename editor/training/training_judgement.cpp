@@ -77,11 +77,17 @@ double held_out_psnr(const Reconstruction& training, const Capture& capture, con
   std::vector<FitPhotograph> photographs;
   for (const Photograph& photograph : capture.held_out) photographs.push_back(for_fit(photograph));
   const TrainingViews views(std::move(photographs), training.plan().to_unit, trained_axes);
+  // Of large photographs, every few rows and columns are enough.
+  constexpr double most_pixels = 1e6;
+  double pixels = 0;
+  for (const FitPhotograph& one : views.photographs()) pixels += static_cast<double>(one.valid.size());
+  const int every = std::max(1, static_cast<int>(std::ceil(std::sqrt(pixels / most_pixels))));
   double sum = 0;
   for (std::size_t k = 0; k < capture.held_out.size(); ++k) {
     progress.at("comparing held-out photographs",
                 static_cast<double>(k) / static_cast<double>(capture.held_out.size()));
-    sum += psnr_of(training.error_of(views, k, nullptr)) / static_cast<double>(capture.held_out.size());
+    sum +=
+        psnr_of(training.error_of(views, k, nullptr, every, progress)) / static_cast<double>(capture.held_out.size());
   }
   return sum;
 }
@@ -104,14 +110,31 @@ MeanErrors held_out_errors(Renderer& renderer, const Scene& scene, const Capture
   return mean;
 }
 
-Image trained_picture(const Reconstruction& training, const FitPhotograph& photograph) {
+Image trained_picture(const Reconstruction& training, const FitPhotograph& photograph, const Progress& progress) {
   const TrainingViews views({photograph}, training.plan().to_unit, trained_axes);
   std::vector<float> colors;
-  training.error_of(views, 0, &colors);
+  training.error_of(views, 0, &colors, 1, progress);
   Image image{photograph.width, photograph.height, {}, {}};
   for (const float color : colors)
     image.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(color, 0.0F, 1.0F))));
   return image;
+}
+
+FitPhotograph reduced(const FitPhotograph& photograph, int most) {
+  const int larger = std::max(photograph.width, photograph.height);
+  if (larger <= most) return photograph;
+  FitPhotograph small = photograph;
+  small.width = std::max(1, photograph.width * most / larger);
+  small.height = std::max(1, photograph.height * most / larger);
+  small.rgb.clear();
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      const int column = x * photograph.width / small.width, row = y * photograph.height / small.height;
+      const auto at = 3 * static_cast<std::ptrdiff_t>(row * photograph.width + column);
+      small.rgb.insert(small.rgb.end(), photograph.rgb.begin() + at, photograph.rgb.begin() + at + 3);
+    }
+  small.valid.assign(small.rgb.size() / 3, 1);
+  return small;
 }
 
 }  // namespace rebake

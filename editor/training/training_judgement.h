@@ -28,7 +28,9 @@ double held_out_psnr(const Reconstruction& training, const Capture& capture, con
 MeanErrors held_out_errors(Renderer& renderer, const Scene& scene, const Capture& capture, bool gain,
                            const Progress& progress);
 
-/// A picture of the trained scene from the camera of a photograph, as it is drawn in stage 2.
-Image trained_picture(const Reconstruction& training, const FitPhotograph& photograph);
+/// A picture of the trained scene from the camera of a photograph, as it is drawn in stage 2. Throws Cancelled.
+Image trained_picture(const Reconstruction& training, const FitPhotograph& photograph, const Progress& progress);
+/// The photograph with at most `most` pixels per side, without mask.
+FitPhotograph reduced(const FitPhotograph& photograph, int most);
 
 }  // namespace rebake

@@ -19,9 +19,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double seconds_between_checkpoints = 300;
-constexpr const char *checkpoint_name = "checkpoint", *preview_name = "preview.png", *table_name = "progress.csv",
-                     *lock_name = "lock";
+constexpr double seconds_between_checkpoints = 60;
+constexpr const char *file_prefix = "rebake-", *checkpoint_name = "rebake-checkpoint",
+                     *preview_name = "rebake-preview.png", *table_name = "rebake-progress.csv",
+                     *lock_name = "rebake-lock";
+constexpr int preview_side = 96;  // pixels at most: it must take less than a second
 
 double psnr_of(double mean_squared_error) { return -10 * std::log10(std::max(mean_squared_error, 1e-10)); }
 
@@ -60,17 +62,12 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
                          Say say, const Progress& progress)
     : options_(options), capture_(std::move(capture)), work_(std::move(work)), say_(std::move(say)) {
   check(options_);
-  std::error_code error;
-  fs::create_directories(work_, error);
-  if (error) throw FileError(work_, "cannot be created: " + error.message());
-  lock_ = std::make_unique<FileLock>(work_ / lock_name);
-  if (!lock_->held()) throw FileError(work_, "is in use by another training to the same folder");
-  const int side = options_.side.value_or(side_for(capture_.training));
-  frame_ = frame_of(options_, capture_, background, side);
+  side_ = options_.side.value_or(side_for(capture_.training));
+  frame_ = frame_of(options_, capture_, background, side_);
   for (const std::string& note : frame_.notes) say_(note);
   std::size_t pixels = 0;
   for (const FitPhotograph& one : capture_.training) pixels += one.valid.size();
-  TrainingPlan plan = plan_for(options_.kind, side, pixels, static_cast<std::uint64_t>(options_.seed));
+  TrainingPlan plan = plan_for(options_.kind, side_, pixels, static_cast<std::uint64_t>(options_.seed));
   plan.to_unit = frame_.to_unit;
   plan.frustum = frame_.frustum;
   plan.gains = options_.gains && capture_.training.size() > 1;
@@ -79,35 +76,62 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
   plan.width = options_.width;
   plan.octaves = options_.octaves;
   plan.layers = options_.layers;
+  if (plan.gains && !frame_.gains.empty())
+    say_("exposures: the backgrounds of the photographs differ in brightness, so each photograph has a gain");
+  open_work_folder();
   nlohmann::json head;
   std::optional<std::string> state;
   if (!options_.fresh) state = read_checkpoint(work_ / checkpoint_name, head);
-  if (state) {
-    if (head.value("options", nlohmann::json()) != identity_of(options_) ||
-        head.value("photographs", std::uint64_t{0}) != capture_.hash)
-      throw FileError(work_,
-                      "holds the checkpoint of a training with other options or photographs; use the same ones, "
-                      "another folder, or start again with fresh (--fresh)");
-    const std::vector<std::size_t> steps = head.at("steps");
-    std::tie(plan.open_steps, plan.soft_steps, plan.binary_steps, plan.feature_steps) =
-        std::tuple(steps.at(0), steps.at(1), steps.at(2), steps.at(3));
-  } else {
-    plan_steps(plan, progress);
+  try {
+    if (state) {
+      if (head.at("options") != identity_of(options_, side_) || head.at("photographs") != capture_.hash)
+        throw FileError(work_,
+                        "holds the checkpoint of a training with other options or photographs; use the same ones, "
+                        "another folder, or start again with fresh (--fresh)");
+      const std::vector<std::size_t> steps = head.at("steps");
+      std::tie(plan.open_steps, plan.soft_steps, plan.binary_steps, plan.feature_steps) =
+          std::tuple(steps.at(0), steps.at(1), steps.at(2), steps.at(3));
+    } else {
+      plan_steps(plan, progress);
+    }
+    for (const std::string& line : words_of(plan)) say_("plan: " + line);
+    TrainingViews views(capture_.training, plan.to_unit, trained_axes);
+    reconstruction_ = std::make_unique<Reconstruction>(plan, std::move(views), frame_.background, fields_of(plan));
+    if (plan.gains && !frame_.gains.empty()) reconstruction_->start_with_gains(frame_.gains);
+    if (state) {
+      reconstruction_->load(*state);
+      seconds_before_ = head.at("seconds");
+      rows_ = head.at("rows");
+      say_(fmt::format("goes on from step {} of {}", reconstruction_->steps_done(), plan.steps()));
+    } else {
+      write_state();  // of step 0: replaces an earlier checkpoint, and keeps the number of steps
+    }
+  } catch (const nlohmann::json::exception&) {
+    throw FileError(work_ / checkpoint_name, "is damaged; start again with fresh (--fresh)");
   }
-  for (const std::string& line : words_of(plan)) say_("plan: " + line);
-  TrainingViews views(capture_.training, plan.to_unit, trained_axes);
-  reconstruction_ = std::make_unique<Reconstruction>(plan, std::move(views), frame_.background, fields_of(plan));
-  if (plan.gains && !frame_.gains.empty()) reconstruction_->start_with_gains(frame_.gains);
-  if (!state) return;
-  reconstruction_->load(*state);
-  seconds_before_ = head.value("seconds", 0.0);
-  rows_ = head.value("rows", rows_);
-  say_(fmt::format("goes on from step {} of {}", reconstruction_->steps_done(), plan.steps()));
+}
+
+// Creates and locks the folder for checkpoints. Other files in it stay safe.
+void TrainingRun::open_work_folder() {
+  std::error_code error;
+  fs::create_directories(work_, error);
+  if (error) throw FileError(work_, "cannot be created: " + error.message());
+  for (const auto& entry : fs::directory_iterator(work_))
+    if (const std::string name = entry.path().filename().string(); !name.starts_with(file_prefix))
+      throw FileError(work_, "holds \"" + name + "\", which is no file of a training; choose another output folder");
+  lock_ = std::make_unique<FileLock>(work_ / lock_name);
+  if (!lock_->held()) throw FileError(work_, "is in use by another training to the same folder");
 }
 
 // Sets the number of steps: as usual, as given, or by time.
 void TrainingRun::plan_steps(TrainingPlan& plan, const Progress& progress) {
-  if (options_.steps) plan = with_steps(plan, *options_.steps);
+  if (options_.steps) {
+    plan = with_steps(plan, *options_.steps);
+    constexpr double rounding = 1.02;
+    if (static_cast<double>(plan.steps()) > rounding * *options_.steps)
+      say_(fmt::format("warning: this grid needs at least {} steps, more than {}; a smaller side needs fewer",
+                       plan.steps(), *options_.steps));
+  }
   if (!options_.minutes) return;
   progress.at("measuring the time of a step", 0);
   Reconstruction trial(plan, TrainingViews(capture_.training, plan.to_unit, trained_axes), frame_.background,
@@ -123,35 +147,42 @@ void TrainingRun::plan_steps(TrainingPlan& plan, const Progress& progress) {
   constexpr double share_of_training = 0.9;  // the rest bakes and compares
   const double open_steps = share_of_training * 60 * *options_.minutes / times[trials / 2];
   plan = with_steps(plan, static_cast<double>(plan.steps()) * open_steps / open_steps_of_time(plan));
+  constexpr double much = 1.2;
+  if (open_steps_of_time(plan) > much * open_steps)
+    say_(fmt::format("warning: this grid needs about {}; a smaller side needs less",
+                     duration_text(open_steps_of_time(plan) * times[trials / 2] / share_of_training)));
 }
 
 double TrainingRun::seconds() const { return seconds_before_ + seconds_since(start_); }
 
-void TrainingRun::write_state() {
+bool TrainingRun::write_state() {
   const TrainingPlan& plan = reconstruction_->plan();
-  const nlohmann::json head = {{"options", identity_of(options_)},
+  const nlohmann::json head = {{"options", identity_of(options_, side_)},
                                {"photographs", capture_.hash},
                                {"steps", {plan.open_steps, plan.soft_steps, plan.binary_steps, plan.feature_steps}},
                                {"seconds", seconds()},
                                {"rows", rows_}};
   try {
     write_checkpoint(work_ / checkpoint_name, head, reconstruction_->save());
+    return true;
   } catch (const FileError& error) {
-    say_(fmt::format("warning: the checkpoint could not be written; the training goes on: {}", error.what()));
+    say_(fmt::format("warning: the checkpoint could not be written: {}", error.what()));
+    return false;
   }
 }
 
 // A row of the table, and a picture of the scene beside a photograph.
-void TrainingRun::show_progress(double mean_error) {
+void TrainingRun::show_progress(double mean_error, const Progress& progress) {
   rows_.push_back({static_cast<double>(reconstruction_->steps_done()), seconds(), psnr_of(mean_error)});
   std::string table = "steps,seconds,PSNR of training pixels dB\n";
   for (const auto& [steps, seconds, psnr] : rows_) table += fmt::format("{:.0f},{:.1f},{:.3f}\n", steps, seconds, psnr);
-  const FitPhotograph& photograph = capture_.training.front();
+  const FitPhotograph photograph = reduced(capture_.training.front(), preview_side);
   const Image wanted{photograph.width, photograph.height, photograph.rgb, {}};
   try {
     write_file_atomically(work_ / table_name, table, {});
-    write_picture(contact_sheet({wanted, trained_picture(*reconstruction_, photograph)}, 2, 4, {128, 128, 128}),
-                  work_ / preview_name, {});
+    write_picture(
+        contact_sheet({wanted, trained_picture(*reconstruction_, photograph, progress)}, 2, 4, {128, 128, 128}),
+        work_ / preview_name, {});
   } catch (const FileError& error) {
     say_(fmt::format("warning: {}", error.what()));
   }
@@ -187,11 +218,16 @@ void TrainingRun::train(const Progress& progress) {
       const double now = seconds_since(start_);
       const std::size_t done = reconstruction_->steps_done();
       const bool ends_stage = reconstruction_->stage() != stage;
+      // Before the preview, which may take a moment in which the program can be stopped.
+      if (ends_stage || now - saved > seconds_between_checkpoints) {
+        write_state();
+        saved = seconds_since(start_);
+      }
       constexpr double first_look = 5;
       if (ends_stage || now - shown > watch_seconds || (shown == 0 && now > first_look)) {
         shown = now;
         psnr = psnr_of(error / static_cast<double>(errors));
-        show_progress(error / static_cast<double>(errors));
+        show_progress(error / static_cast<double>(errors), progress);
         error = 0;
         errors = 0;
       }
@@ -199,15 +235,9 @@ void TrainingRun::train(const Progress& progress) {
         say_(fmt::format("{} done after {}: {:.2f} dB on training pixels", name_of(stage), duration_text(seconds()),
                          psnr));
       if (ends_stage && stage == TrainingStage::soft && reconstruction_->plan().gains)
-        say_(reconstruction_->has_gains()
-                 ? fmt::format("exposures differ by {:.0f} %: each photograph has a gain",
-                               100 * reconstruction_->exposure_spread())
-                 : fmt::format("exposures: no gains; differences of {:.1f} % do not explain the errors",
-                               100 * reconstruction_->exposure_spread()));
-      if (ends_stage || now - saved > seconds_between_checkpoints) {
-        write_state();
-        saved = seconds_since(start_);
-      }
+        say_(reconstruction_->has_gains() ? fmt::format("exposures differ by {:.0f} %: each photograph has a gain",
+                                                        100 * reconstruction_->exposure_spread())
+                                          : std::string("exposures agree: no gains"));
       const double work = work_of(done);
       const std::string rest =
           work > work_before + 10 ? about + remaining((all_work - work) * now / (work - work_before)) : std::string();
@@ -216,9 +246,9 @@ void TrainingRun::train(const Progress& progress) {
                   0.95 * work / all_work);
     }
   } catch (const Cancelled&) {
-    write_state();
-    say_(fmt::format("stopped at step {} of {}; the same command goes on from there", reconstruction_->steps_done(),
-                     total));
+    const bool kept = write_state();
+    say_(fmt::format("stopped at step {} of {}; the same command goes on from {}", reconstruction_->steps_done(), total,
+                     kept ? "there" : "the last checkpoint, if there is one"));
     throw;
   }
 }

@@ -40,12 +40,14 @@ class TrainingRun {
 
  private:
   void plan_steps(TrainingPlan& plan, const Progress& progress);
-  void write_state();
-  void show_progress(double mean_error);
+  void open_work_folder();
+  bool write_state();
+  void show_progress(double mean_error, const Progress& progress);
 
   ReconstructionOptions options_;
   Capture capture_;
   CaptureFrame frame_;
+  int side_ = 0;  // cells
   std::filesystem::path work_;
   Say say_;
   std::unique_ptr<FileLock> lock_;

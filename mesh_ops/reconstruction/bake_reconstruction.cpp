@@ -240,7 +240,8 @@ std::vector<FitPhotograph> views_around(const TrainingViews& views) {
 }
 
 // Flags the triangles that rays through the pixels of a view hit first.
-void flag_visible(const RayTree& tree, const FitPhotograph& view, double rows, std::vector<std::atomic<bool>>& seen) {
+void flag_visible(const RayTree& tree, const FitPhotograph& view, double rows, double nearest,
+                  std::vector<std::atomic<bool>>& seen) {
   // Slim triangles must not fall between the rays.
   const double finer = std::max(2.0, std::ceil(rows / view.height));
   const int width = static_cast<int>(view.width * finer), height = static_cast<int>(view.height * finer);
@@ -252,11 +253,12 @@ void flag_visible(const RayTree& tree, const FitPhotograph& view, double rows, s
       for (int k = 0; k < 8; ++k) {
         const auto lane = static_cast<std::size_t>(k);
         rays.origins[lane] = view.camera.eye;
-        rays.directions[lane] = to_scene * Vec3((std::min(x + k, width - 1) + 0.5 - width / 2.0) / focal,
-                                                -(y + 0.5 - height / 2.0) / focal, -1);
+        rays.directions[lane] = (to_scene * Vec3((std::min(x + k, width - 1) + 0.5 - width / 2.0) / focal,
+                                                 -(y + 0.5 - height / 2.0) / focal, -1))
+                                    .normalized();
         rays.far[lane] = 1e30;
       }
-      tree.nearest(rays, 0);
+      tree.nearest(rays, nearest);
       for (std::size_t lane = 0; lane < 8; ++lane)
         if (rays.hit[lane]) seen[rays.triangle[lane]].store(true, std::memory_order_relaxed);
     }
@@ -284,12 +286,14 @@ std::vector<std::array<bool, 2>> visible_halves(const Reconstruction& trained, c
   const std::vector<FitPhotograph>& photographs = trained.views().photographs();
   const std::size_t total = photographs.size() + around.size();
   constexpr double rows = 512, rows_around = 256;
+  // As in training.
+  const double nearest = trained.grid().space().nearest() / trained.plan().to_unit.linear().col(0).norm();
   for (std::size_t k = 0; k < total; ++k) {
     progress.at("finding visible triangles", static_cast<double>(k) / static_cast<double>(total));
     if (k < photographs.size())
-      flag_visible(tree, photographs[k], rows, seen);
+      flag_visible(tree, photographs[k], rows, nearest, seen);
     else
-      flag_visible(tree, around[k - photographs.size()], rows_around, seen);
+      flag_visible(tree, around[k - photographs.size()], rows_around, nearest, seen);
   }
   std::vector<std::array<bool, 2>> visible(quads.size());
   for (std::size_t q = 0; q < quads.size(); ++q) visible[q] = {seen[2 * q].load(), seen[2 * q + 1].load()};

@@ -135,27 +135,45 @@ Box carved(const std::vector<FitPhotograph>& photographs, const std::vector<Silh
   return all;
 }
 
+Vec3 display_of(const Vec3& linear) {
+  return linear.unaryExpr([](double value) { return to_display(std::clamp(value, 0.0, 1.0)); });
+}
+
 // Background and exposures by the colours along the borders of the photographs.
 void find_background(const std::vector<Bytes>& borders, CaptureFrame& frame) {
-  if (!std::all_of(borders.begin(), borders.end(), [&](const Bytes& one) { return alike(one.data(), borders[0]); })) {
-    for (const Bytes& border : borders) {
-      Vec3 gain;
-      for (std::size_t c = 0; c < 3; ++c) {
-        const auto at = static_cast<Eigen::Index>(c);
-        gain[at] = std::max(to_linear(border[c] / 255.0), 1e-3) / std::max(to_linear(frame.background[at]), 1e-3);
-      }
-      frame.gains.push_back(gain);
-    }
-    frame.notes.emplace_back(
-        "exposures: photographs have even backgrounds of different brightness, so each has a gain");
-    return;
+  std::vector<Vec3> linear;
+  Vec3 logs = Vec3::Zero(), sum = Vec3::Zero(), brightest = Vec3::Zero();
+  constexpr double darkest = 0.05;  // darker backgrounds tell no exposure
+  bool exposures = true;
+  for (const Bytes& border : borders) {
+    Vec3& light = linear.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) light[static_cast<Eigen::Index>(c)] = to_linear(border[c] / 255.0);
+    exposures = exposures && light.minCoeff() >= darkest;
+    logs += light.cwiseMax(1e-6).array().log().matrix() / static_cast<double>(borders.size());
+    sum += light / static_cast<double>(borders.size());
+    if (light.sum() > brightest.sum()) brightest = light;
   }
-  const Vec3 color = Vec3(borders[0][0], borders[0][1], borders[0][2]) / 255;
+  const Vec3 mean = logs.array().exp().matrix();
+  const auto alike_all = [&](const Bytes& one) { return alike(one.data(), borders[0]); };
+  const bool same = std::all_of(borders.begin(), borders.end(), alike_all);
+  // Exposure changes all channels alike; white balance a little.
+  constexpr double most_tint = 1.25;
+  for (const Vec3& light : linear) {
+    const Vec3 gain = light.cwiseQuotient(mean);
+    exposures = exposures && gain.maxCoeff() <= most_tint * gain.minCoeff();
+  }
+  Vec3 color = same ? display_of(linear[0]) : display_of(sum);
+  if (!same && exposures) {
+    // A white background that the brightest photographs show is white; others are in the middle of the exposures.
+    constexpr double white = 0.8;
+    const Vec3 reference = brightest.minCoeff() >= white ? brightest : mean;
+    for (const Vec3& light : linear) frame.gains.push_back(light.cwiseQuotient(reference));
+    color = display_of(reference);
+  }
   if ((color - frame.background).cwiseAbs().maxCoeff() <= tolerance / 255.0) return;
   frame.background = color;
-  frame.notes.push_back(
-      fmt::format("background: ({:.2f}, {:.2f}, {:.2f}), the colour along the borders of all photographs", color.x(),
-                  color.y(), color.z()));
+  frame.notes.push_back(fmt::format("background: ({:.2f}, {:.2f}, {:.2f}), from the borders of the photographs",
+                                    color.x(), color.y(), color.z()));
 }
 
 }  // namespace
@@ -185,10 +203,12 @@ CaptureFrame object_frame(const std::vector<FitPhotograph>& photographs, const V
   if (even) find_background(borders, frame);
   cube.half /= 1 - 2 * margin;
   frame.to_unit = Eigen::Scaling(1 / cube.half) * Eigen::Translation3d(-cube.middle);
-  frame.notes.push_back(fmt::format(
-      "grid: cube of side {:.4g} around ({:.4g}, {:.4g}, {:.4g}), {}", 2 * cube.half, cube.middle.x(), cube.middle.y(),
-      cube.middle.z(),
-      found ? "from the silhouettes" : "from what the cameras see: the photographs have no even background"));
+  frame.notes.push_back(
+      fmt::format("grid: cube of side {:.4g} around ({:.4g}, {:.4g}, {:.4g}), {}", 2 * cube.half, cube.middle.x(),
+                  cube.middle.y(), cube.middle.z(),
+                  found  ? "from the silhouettes"
+                  : even ? "from the cameras, because the silhouettes do not agree: check the poses, world and scale"
+                         : "from the cameras, because photographs have no even background"));
   return frame;
 }
 
@@ -226,25 +246,29 @@ CaptureFrame forward_frame(const std::vector<FitPhotograph>& photographs, double
     throw Error("the cameras look in different directions: is this a forward-facing capture?");
   const Mat3 turn = rotation_with(back, up);
   CaptureFrame frame;
-  bool assumed = false;
-  if (near == 0) {
-    near = std::numeric_limits<double>::infinity();
-    for (const FitPhotograph& one : photographs)
-      if (one.camera.near_plane > 0) near = std::min(near, one.camera.near_plane);
-    assumed = !std::isfinite(near);
-    double distance = 0;
-    for (const FitPhotograph& one : photographs)
-      distance += (one.camera.target - one.camera.eye).norm() / static_cast<double>(photographs.size());
-    if (assumed) near = distance / 2;
-    if (far == 0) {
-      for (const FitPhotograph& one : photographs) far = std::max(far, one.camera.far_plane);
-      if (assumed || far <= near) far = 10 * distance;
-    }
+  std::string assumed;
+  double distance = 0, stated_near = std::numeric_limits<double>::infinity(), stated_far = 0;
+  for (const FitPhotograph& one : photographs) {
+    distance += (one.camera.target - one.camera.eye).norm() / static_cast<double>(photographs.size());
+    if (one.camera.near_plane > 0) stated_near = std::min(stated_near, one.camera.near_plane);
+    stated_far = std::max(stated_far, one.camera.far_plane);
   }
+  if (near == 0 && std::isfinite(stated_near)) near = stated_near;
+  if (far == 0 && stated_far > near) far = stated_far;
+  if (near == 0) {
+    near = far > 0 ? std::min(distance / 2, far / 2) : distance / 2;
+    assumed = "near";
+  }
+  if (far == 0) {
+    far = std::max(10 * distance, 4 * near);
+    assumed += assumed.empty() ? "far" : " and far";
+  }
+  if (!(far > near))
+    throw Error(fmt::format("the farthest depth, {:.4g}, is not above the nearest, {:.4g}", far, near));
   constexpr double nearest = 4.0 / 3, widest = 0.875;
   const double scale = nearest / near;
   frame.to_unit = Eigen::Scaling(scale) * Affine(turn) * Eigen::Translation3d(-eye);
-  if (far > near) frame.frustum.farthest = std::max(2.0, 1.1 * scale * far);
+  frame.frustum.farthest = std::max(2.0, 1.1 * scale * far);
   double slope = 0;
   for (const FitPhotograph& one : photographs) {
     const Vec3 place = frame.to_unit * one.camera.eye;
@@ -262,9 +286,9 @@ CaptureFrame forward_frame(const std::vector<FitPhotograph>& photographs, double
     }
   }
   frame.frustum.slope = std::clamp(1.05 * slope, 0.1, widest);
-  frame.notes.push_back(
-      fmt::format("grid: a frustum from depth {:.4g} to {:.4g}{}", near / nearest, frame.frustum.farthest / scale,
-                  assumed ? "; depths are assumed from the point that the cameras look at: give near and far" : ""));
+  frame.notes.push_back(fmt::format(
+      "grid: a frustum from depth {:.4g} to {:.4g}{}", near / nearest, frame.frustum.farthest / scale,
+      assumed.empty() ? "" : "; depths are assumed from the point that the cameras look at: give " + assumed));
   return frame;
 }
 

@@ -33,7 +33,7 @@ std::vector<Vec3> Exposures::gains() const {
       if (sums[0] > 0 && sums[1] > 0) gains[k][at] = std::clamp(sums[0] / sums[1], 1.0 / 32, 32.0);
       logs[at] += std::log(gains[k][at]) / static_cast<double>(count);
     }
-  for (Vec3& gain : gains) gain = gain.cwiseQuotient(logs.array().exp().matrix());
+  for (Vec3& gain : gains) gain = gain.cwiseQuotient(logs.array().exp().matrix()).cwiseProduct(mean);
   return gains;
 }
 
@@ -62,9 +62,9 @@ double Exposures::explained() const {
 
 double Exposures::spread() const {
   const std::vector<Vec3> all = gains();
-  double mean = 0, squares = 0;
-  for (const Vec3& gain : all) mean += gain.mean() / static_cast<double>(all.size());
-  for (const Vec3& gain : all) squares += std::pow(gain.mean() / mean - 1, 2) / static_cast<double>(all.size());
+  double middle = 0, squares = 0;
+  for (const Vec3& gain : all) middle += gain.mean() / static_cast<double>(all.size());
+  for (const Vec3& gain : all) squares += std::pow(gain.mean() / middle - 1, 2) / static_cast<double>(all.size());
   return std::sqrt(squares);
 }
 

@@ -16,8 +16,9 @@ class Exposures {
   /// Adds a pixel: its display colour in the photograph, and that of the scene. Those that the
   /// photograph clips do not count.
   void add(std::size_t photograph, const Vec3& in_photograph, const Vec3& in_scene);
-  /// Gains per photograph, whose geometric means per channel are 1. 1 where nothing was added.
+  /// Gains per photograph, whose geometric means per channel are `mean`. The mean where nothing was added.
   std::vector<Vec3> gains() const;
+  Vec3 mean = Vec3::Ones();
   /// Halves the weight of all pixels that were added so far.
   void fade();
   /// Whether exposures differ: gains have a spread() of at least 4 %, and explain at least a third of the error.

@@ -92,8 +92,7 @@ std::optional<std::pair<double, double>> GridSpace::range_of(const Vec3& origin,
       end = -1;
   };
   if (kind_ != CaptureKind::forward) {
-    constexpr double nearest = 0.2;
-    if (kind_ == CaptureKind::unbounded) begin = nearest / direction.norm();
+    begin = nearest() / direction.norm();
     for (int axis = 0; axis < 3; ++axis) {
       clip(1 - origin[axis], -direction[axis]);
       clip(1 + origin[axis], direction[axis]);

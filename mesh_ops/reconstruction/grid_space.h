@@ -41,6 +41,8 @@ class GridSpace {
   }
   std::array<int, 3> cell_of_number(std::uint32_t cell) const;
 
+  /// Distance from the eye below which nothing is hit: 0.2 in unbounded scenes, as published, else 0.
+  double nearest() const { return kind_ == CaptureKind::unbounded ? 0.2 : 0; }
   int boxes() const { return boxes_; }
   /// Half the width of a nested box: from 1 to 16, growing exponentially.
   double box_radius(int box) const;
@@ -60,8 +62,7 @@ class GridSpace {
   /// Derivative of to_cells(point + t · direction) by t at t = 0.
   Vec3 cells_along(const Vec3& point, const Vec3& direction) const;
 
-  /// The part t ∈ [first, second], first ≥ 0, of a ray that lies inside the grid. In unbounded scenes it begins at a
-  /// distance of 0.2, as published.
+  /// The part t ∈ [first, second], first ≥ 0, of a ray that lies inside the grid. Begins at nearest().
   std::optional<std::pair<double, double>> range_of(const Vec3& origin, const Vec3& direction) const;
   /// Where the ray crosses plane `layer` (0 … side) of an axis along its trend; infinity if it never does.
   double crossing(int axis, int layer, const Vec3& origin, const Vec3& direction) const;

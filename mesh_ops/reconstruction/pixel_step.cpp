@@ -169,33 +169,39 @@ double Reconstruction::pixel_step(bool features_only) {
   return error;
 }
 
-double Reconstruction::error_of(const TrainingViews& views, std::size_t photograph, std::vector<float>* image) const {
+double Reconstruction::error_of(const TrainingViews& views, std::size_t photograph, std::vector<float>* image,
+                                int every, const Progress& progress) const {
   const FitPhotograph& one = views.photographs()[photograph];
   const std::size_t each = rays_each(plan_);
-  const auto width = static_cast<std::size_t>(one.width);
   double error = 0;
   std::size_t counted = 0;
   if (image != nullptr) image->resize(one.rgb.size());
-  for (int y = 0; y < one.height; ++y) {
+  for (int y = every / 2; y < one.height; y += every) {
+    progress.at("drawing", static_cast<double>(y) / one.height);
     RayBatch batch;
-    for (int x = 0; x < one.width; ++x) add_rays(plan_, views, {photograph, x, y}, batch);
+    std::vector<int> columns;
+    for (int x = every / 2; x < one.width; x += every) {
+      columns.push_back(x);
+      add_rays(plan_, views, {photograph, x, y}, batch);
+    }
     batch.find_hits(grid_, active_, plan_.pixel_hits);
     fields_.opacity->evaluate(batch.points, batch.opacities);
     const WeightedHits drawn = weighted(batch, as_drawn);
     const ShownHits shown = shown_hits(batch, {&drawn}, true, *fields_.features);
-    std::vector<PixelMean> means(width);
-    for_pixels(width, [&](std::size_t p) { means[p] = mean_of(batch, p, each, drawn, shown); });
+    std::vector<PixelMean> means(columns.size());
+    for_pixels(means.size(), [&](std::size_t p) { means[p] = mean_of(batch, p, each, drawn, shown); });
     std::vector<float> decoded;
     decoder_.evaluate(inputs_of(means), decoded);
-    for (std::size_t x = 0; x < width; ++x) {
-      const std::size_t pixel = static_cast<std::size_t>(y) * width + x;
-      const Vec3 color = color_of(means[x], &decoded[3 * x], background_);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const std::size_t pixel =
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(one.width) + static_cast<std::size_t>(columns[k]);
+      const Vec3 color = color_of(means[k], &decoded[3 * k], background_);
       if (image != nullptr)
         for (std::size_t c = 0; c < 3; ++c)
           (*image)[3 * pixel + c] = static_cast<float>(color[static_cast<Eigen::Index>(c)]);
       if (one.valid[pixel] == 0) continue;
       ++counted;
-      error += (color - views.color({photograph, static_cast<int>(x), y})).squaredNorm() / 3;
+      error += (color - views.color({photograph, columns[k], y})).squaredNorm() / 3;
     }
   }
   return counted == 0 ? 0 : error / static_cast<double>(counted);

@@ -241,6 +241,9 @@ void Reconstruction::update_exposures() {
 void Reconstruction::start_with_gains(const std::vector<Vec3>& gains) {
   has_gains_ = true;
   set_gains(gains);
+  Vec3 logs = Vec3::Zero();
+  for (const Vec3& gain : gains) logs += gain.array().log().matrix() / static_cast<double>(gains.size());
+  exposures_.mean = logs.array().exp().matrix();
 }
 
 // The error of a pixel's colour. Clipped channels may have been brighter, which gains would make darker.

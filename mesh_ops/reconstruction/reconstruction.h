@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "mesh_ops/base/progress.h"
 #include "mesh_ops/reconstruction/exposures.h"
 #include "mesh_ops/reconstruction/pixel_mean.h"
 #include "mesh_ops/reconstruction/ray_batch.h"
@@ -37,8 +38,10 @@ class Reconstruction {
   double step();
 
   /// Mean squared error of a photograph's valid pixels over all channels, drawn with binary opacity and the rays of
-  /// stage 2; `image`: the picture, as [pixel][channel]; null: not needed.
-  double error_of(const TrainingViews& views, std::size_t photograph, std::vector<float>* image) const;
+  /// stage 2. `every`: only each n-th row and column. `image`: the picture, as [pixel][channel], for `every` 1; null:
+  /// not needed. Throws Cancelled.
+  double error_of(const TrainingViews& views, std::size_t photograph, std::vector<float>* image, int every = 1,
+                  const Progress& progress = {}) const;
 
   const TrainingViews& views() const { return views_; }
   TrainingViews& views() { return views_; }

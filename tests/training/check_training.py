@@ -57,7 +57,7 @@ def main():
             capture, out = os.path.join(folder, model), os.path.join(folder, model + "-trained")
             photograph(program, model, side, views, capture)
             subprocess.run([program, "train", capture, "-o", out, "--kind", kind, *options], check=True)
-            with open(os.path.join(out, "training.json")) as file:
+            with open(os.path.join(out, "rebake_training.json")) as file:
                 report = json.load(file)
             judged = report["held out"]
             psnr = judged["PSNR dB"]

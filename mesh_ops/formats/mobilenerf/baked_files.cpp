@@ -31,7 +31,7 @@ std::size_t skip_digits(std::string_view& text) {
 
 bool is_baked_file_name(const std::string& name) {
   // The report of a training.
-  if (name == "training.json") return true;
+  if (name == "rebake_training.json") return true;
   if (name == "mlp.json" || std::ranges::find(sidecar_names, name) != sidecar_names.end()) return true;
   std::string_view rest = name;
   if (!rest.starts_with("shape")) return false;

@@ -48,7 +48,7 @@ class Train : public Script {
     write_text(at("cap") / (name + ".json"), transforms_text(from_y_up(std::move(cameras), WorldUp::z)));
   }
   nlohmann::json report(const std::string& folder) const {
-    return nlohmann::json::parse(read_file(at(folder) / "training.json"));
+    return nlohmann::json::parse(read_file(at(folder) / "rebake_training.json"));
   }
   // A training of two seconds.
   const std::string train_ =
@@ -64,7 +64,7 @@ TEST_F(Train, WritesAFolderThatShowsThePhotographs) {
   run(train_ + "}");
   const std::string words = said();
   EXPECT_NE(words.find("plan: nested boxes: none"), std::string::npos);
-  EXPECT_NE(words.find("exposures: no gains"), std::string::npos);
+  EXPECT_NE(words.find("exposures agree: no gains"), std::string::npos);
   const nlohmann::json held_out = report("out")["held out"];
   EXPECT_EQ(held_out["photographs"], 5);
   const double psnr = held_out["PSNR dB"];
@@ -100,10 +100,10 @@ TEST_F(Train, GoesOnFromACheckpointWithTheSameBytes) {
   // Other options and damage are refused, and lose nothing.
   expect_error(R"({"op": "train", "photographs": "{here}/cap", "side": 16, "steps": 700, "out": "{here}/parts"})",
                "a training with other options");
-  const std::string checkpoint = read_file(at("parts.training/checkpoint"));
-  write_text(at("parts.training/checkpoint"), checkpoint.substr(0, checkpoint.size() - 1) + "x");
+  const std::string checkpoint = read_file(at("parts.training/rebake-checkpoint"));
+  write_text(at("parts.training/rebake-checkpoint"), checkpoint.substr(0, checkpoint.size() - 1) + "x");
   expect_error(few + "parts\"}", "is damaged");
-  write_text(at("parts.training/checkpoint"), checkpoint);
+  write_text(at("parts.training/rebake-checkpoint"), checkpoint);
   said();
   run(few + "parts\"}");
   EXPECT_NE(said().find("goes on from step 6"), std::string::npos);
@@ -156,9 +156,15 @@ TEST_F(Train, BadInputIsRefusedBeforeAnythingIsWritten) {
 
 TEST_F(Train, CheckpointsThatCannotBeWrittenDoNotStopIt) {
   photograph("transforms_train", 8);
-  fs::create_directories(at("out.training/checkpoint"));  // a folder where the file should be
+  // Files of others in the folder are not touched.
+  fs::create_directories(at("mine.training"));
+  write_text(at("mine.training/preview.png"), "mine");
+  expect_error(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/mine", "side": 16, "steps": 600})",
+               "preview.png");
+  EXPECT_EQ(read_file(at("mine.training/preview.png")), "mine");
+  fs::create_directories(at("out.training/rebake-checkpoint"));  // a folder where the file should be
   run(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/out", "side": 16, "steps": 600, "fresh": true})");
-  EXPECT_NE(said().find("the checkpoint could not be written; the training goes on"), std::string::npos);
+  EXPECT_NE(said().find("the checkpoint could not be written"), std::string::npos);
   EXPECT_TRUE(fs::exists(at("out/mlp.json")));
 }
 

@@ -52,12 +52,33 @@ TEST(CaptureFrame, AnEvenBackgroundIsFoundUnlessExposuresDiffer) {
   EXPECT_EQ(frame.background, Vec3::Zero());
   EXPECT_LT(half_of_cube(frame), 0.6);
   photographs = ball_photographs(20, 48);
-  for (std::size_t k = 0; k < photographs.size(); ++k) recolour(photographs[k], static_cast<std::uint8_t>(150 + 5 * k));
+  // White in the brightest photograph.
+  for (std::size_t k = 0; k < photographs.size(); ++k) recolour(photographs[k], static_cast<std::uint8_t>(160 + 5 * k));
   frame = object_frame(photographs, Vec3::Ones(), 0);
   EXPECT_EQ(frame.background, Vec3::Ones());
   ASSERT_EQ(frame.gains.size(), photographs.size());
-  EXPECT_NEAR(frame.gains[2].x(), to_linear(160 / 255.0), 1e-12);
+  EXPECT_NEAR(frame.gains[2].x(), to_linear(170 / 255.0), 1e-12);
   EXPECT_LT(half_of_cube(frame), 0.6);
+}
+
+TEST(CaptureFrame, GreyBackdropsAreTheBackgroundAndDarkOnesTellNoExposure) {
+  const auto with_borders = [](int first, int step) {
+    auto photographs = ball_photographs(20, 48);
+    for (std::size_t k = 0; k < photographs.size(); ++k)
+      for (std::size_t p = 0; p < photographs[k].rgb.size(); p += 3)
+        if (photographs[k].rgb[p] == 255)
+          std::fill_n(&photographs[k].rgb[p], 3, static_cast<std::uint8_t>(first + step * static_cast<int>(k)));
+    return object_frame(photographs, Vec3::Ones(), 0);
+  };
+  const CaptureFrame grey = with_borders(110, 2);
+  ASSERT_EQ(grey.gains.size(), 20U);
+  EXPECT_NEAR(grey.background.x(), 129 / 255.0, 0.01);
+  Vec3 logs = Vec3::Zero();
+  for (const Vec3& gain : grey.gains) logs += gain.array().log().matrix();
+  EXPECT_LT(logs.norm(), 1e-9);
+  const CaptureFrame dark = with_borders(0, 1);
+  EXPECT_TRUE(dark.gains.empty());
+  EXPECT_LT(dark.background.maxCoeff(), 0.08);
 }
 
 TEST(CaptureFrame, APhotographIsEnoughAndNoneIsNot) {
