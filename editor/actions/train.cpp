@@ -145,8 +145,6 @@ void run(Session& session, const TrainAction& action) {
   exporting.sources = sources;
   const ExportReport exported = export_scene(scene, out, exporting, session.progress);
   for (const std::string& note : exported.notes) session.say("note: " + note);
-  if (training.frame().background != Scene{}.background)
-    session.say("note: the folder has no background; viewers show the scene on white, photographs had another");
   session.wrote_scene(action.out, true);
   session.say(fmt::format("stage 3: {} triangles and {} opaque texels of {} visible quads (of {}), after {}",
                           node.object->triangle_count(), counts.opaque_texels, counts.visible_quads, counts.quads,
