@@ -27,7 +27,10 @@ PhotographSet read_photographs(const PhotographSource& source, const std::vector
   for (std::size_t k = 0; k < cameras.size(); ++k) {
     progress.at("reading photographs", static_cast<double>(k) / static_cast<double>(cameras.size()));
     if (photograph_at(folder, cameras[k].name).empty()) {
-      if (set.missing++ == 0) set.first_missing = cameras[k].name;
+      // Names may not leave the folder: another file could be meant on another machine.
+      const bool outside = std::filesystem::path(cameras[k].name).lexically_normal().string().starts_with("..");
+      if (set.missing++ == 0)
+        set.first_missing = cameras[k].name + (outside ? " (outside the folder of the camera file)" : "");
       continue;
     }
     Photograph photograph = read_photograph(cameras[k], views[k], folder, background);

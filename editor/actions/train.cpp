@@ -51,7 +51,7 @@ nlohmann::json judge(Session& session, const TrainingRun& run, const Scene& scen
   const Capture& capture = run.capture();
   if (capture.held_out.empty()) return nullptr;
   const bool gain = run.reconstruction().has_gains();
-  const TrainingBaselines simple = baselines(capture);
+  const TrainingBaselines simple = baselines(run.reconstruction().views().photographs(), capture.held_out);
   const Vec3& background = run.frame().background;
   nlohmann::json report = {{"photographs", capture.held_out.size()},
                            {"background", {number(background.x()), number(background.y()), number(background.z())}},
@@ -90,7 +90,7 @@ nlohmann::json report_of(const TrainingRun& run, const TrainAction& action, cons
   for (const auto& [steps, seconds, psnr] : run.progress_rows())
     rows.push_back({steps, std::round(seconds * 10) / 10, number(psnr)});
   nlohmann::json report = {{"software", "Rebake"},
-                           {"photographs", run.capture().training.size()},
+                           {"photographs", run.reconstruction().views().photographs().size()},
                            {"seed", action.seed},
                            {"steps", run.reconstruction().plan().steps()},
                            {"side", run.reconstruction().plan().side},

@@ -175,10 +175,13 @@ class Document:
         picture: format of the pictures in a folder: png, exr, webp or jpg
         nodes: only these nodes and their children; default: all
         """
-    def compare_photographs(self, cameras: str, out: str | PathLike[str] = "", worst: int = 8, samples: int = 4, gain: bool = False, min_psnr: float | None = None) -> list[str]:
+    def compare_photographs(self, cameras: str, format: Literal["auto", "transforms", "colmap", "poses_bounds", "nerfstudio_path", "ngp_path"] = "auto", world: Literal["y_up", "z_up"] | None = None, scale: float = 1.0, out: str | PathLike[str] = "", worst: int = 8, samples: int = 4, gain: bool = False, min_psnr: float | None = None) -> list[str]:
         """Compares the scene with photographs: PSNR, SSIM and FLIP of each; returns notes.
 
         cameras: camera file of the photographs, or the folder of a capture (transforms.json, COLMAP, poses_bounds.npy, camera_path.json)
+        format: format of the camera file; auto: recognised
+        world: axis that points up in the camera file, as for import_views
+        scale: factor of the cameras' positions
         out: folder for a table and, per photograph, a picture of it, the scene and the error; default: none
         worst: number of photographs on the sheet worst.png
         samples: samples per pixel: 1, 4 or 16

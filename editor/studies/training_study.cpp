@@ -129,7 +129,7 @@ StudyTable study_training(const StudyInput& input) {
   const Capture capture =
       own_pictures ? pictures_of(input) : read_capture({input.photographs}, {}, input.scene.background, input.progress);
   if (capture.held_out.empty()) throw Error("the study needs photographs that are held out");
-  const TrainingBaselines simple = baselines(capture);
+  const TrainingBaselines simple = baselines(capture.training, capture.held_out);
   table.rows.push_back({"white picture", {not_measured, simple.white_db, not_measured, 0, 0}});
   table.rows.push_back({"mean colour", {not_measured, simple.mean_color_db, not_measured, 0, 0}});
   table.rows.push_back({"nearest photograph", {not_measured, simple.nearest_photograph_db, not_measured, 0, 0}});

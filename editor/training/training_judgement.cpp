@@ -47,22 +47,22 @@ const FitPhotograph& nearest_to(const Camera& camera, const std::vector<FitPhoto
 
 }  // namespace
 
-TrainingBaselines baselines(const Capture& capture) {
+TrainingBaselines baselines(const std::vector<FitPhotograph>& training, const std::vector<Photograph>& held_out) {
   std::array<double, 3> sums{};
   double count = 0;
-  for (const FitPhotograph& one : capture.training)
+  for (const FitPhotograph& one : training)
     for (std::size_t p = 0; p < one.valid.size(); ++p)
       if (one.valid[p] != 0) {
         ++count;
         for (std::size_t c = 0; c < 3; ++c) sums[c] += one.rgb[3 * p + c];
       }
   TrainingBaselines result;
-  const double share = 1.0 / static_cast<double>(capture.held_out.size());
-  for (const Photograph& photograph : capture.held_out) {
+  const double share = 1.0 / static_cast<double>(held_out.size());
+  for (const Photograph& photograph : held_out) {
     result.mean_color_db +=
         share * psnr_of(squared_error(photograph, [&](int, int, std::size_t c) { return sums[c] / count; }));
     result.white_db += share * psnr_of(squared_error(photograph, [&](int, int, std::size_t) { return 255.0; }));
-    const FitPhotograph& nearest = nearest_to(photograph.camera, capture.training);
+    const FitPhotograph& nearest = nearest_to(photograph.camera, training);
     result.nearest_photograph_db +=
         share * psnr_of(squared_error(photograph, [&](int x, int y, std::size_t c) {
           const int column = x * nearest.width / photograph.image.width,

@@ -18,7 +18,7 @@ struct TrainingBaselines {
   double nearest_photograph_db = 0;  ///< PSNR of the training photograph with the most similar camera, as it is
   double white_db = 0;               ///< PSNR of a white picture
 };
-TrainingBaselines baselines(const Capture& capture);
+TrainingBaselines baselines(const std::vector<FitPhotograph>& training, const std::vector<Photograph>& held_out);
 
 /// Mean PSNR in dB of the trained scene as it is drawn in stage 2, before baking.
 double held_out_psnr(const Reconstruction& training, const Capture& capture, const Progress& progress);

@@ -95,7 +95,7 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
       plan_steps(plan, progress);
     }
     for (const std::string& line : words_of(plan)) say_("plan: " + line);
-    TrainingViews views(capture_.training, plan.to_unit, trained_axes);
+    TrainingViews views(std::move(capture_.training), plan.to_unit, trained_axes);
     reconstruction_ = std::make_unique<Reconstruction>(plan, std::move(views), frame_.background, fields_of(plan));
     if (plan.gains && !frame_.gains.empty()) reconstruction_->start_with_gains(frame_.gains);
     if (state) {
@@ -176,7 +176,7 @@ void TrainingRun::show_progress(double mean_error, const Progress& progress) {
   rows_.push_back({static_cast<double>(reconstruction_->steps_done()), seconds(), psnr_of(mean_error)});
   std::string table = "steps,seconds,PSNR of training pixels dB\n";
   for (const auto& [steps, seconds, psnr] : rows_) table += fmt::format("{:.0f},{:.1f},{:.3f}\n", steps, seconds, psnr);
-  const FitPhotograph photograph = reduced(capture_.training.front(), preview_side);
+  const FitPhotograph photograph = reduced(reconstruction_->views().photographs().front(), preview_side);
   const Image wanted{photograph.width, photograph.height, photograph.rgb, {}};
   try {
     write_file_atomically(work_ / table_name, table, {});

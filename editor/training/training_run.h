@@ -29,6 +29,7 @@ class TrainingRun {
   std::function<void(const Reconstruction&)> watch;
   double watch_seconds = 20;
 
+  /// Its training photographs are those of reconstruction().
   const Capture& capture() const { return capture_; }
   const CaptureFrame& frame() const { return frame_; }
   const Reconstruction& reconstruction() const { return *reconstruction_; }
