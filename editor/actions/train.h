@@ -4,6 +4,7 @@
 #include "editor/actions/session.h"
 #include "editor/fields/values.h"
 #include "mesh_ops/reconstruction/grid_space.h"
+#include "mesh_ops/scene/photo_camera.h"
 
 namespace rebake {
 
