@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Trains scenes of each kind from photographs of the procedural samples, and checks what the reports say (8 minutes on two cores).
+"""Trains scenes of each kind from photographs of the procedural samples, and checks what the reports say (12 minutes on two cores).
 
     tests/training/check_training.py build/rebake
 """
@@ -13,7 +13,7 @@ import tempfile
 CAPTURES = [
     ("ficus", "object", 128, 100, ["--steps", "3500"], 24, True),
     ("kettle", "object", 128, 100, ["--steps", "3500"], 24, True),
-    ("shelf", "forward", 64, 12, ["--steps", "2500", "--near", "1.7", "--far", "4"], 20, True),
+    ("shelf", "forward", 128, 16, ["--steps", "7000", "--side", "48", "--near", "1.7", "--far", "4"], 24, True),
     ("blend", "object", 64, 48, ["--steps", "3000"], 24, False),
     ("courtyard", "unbounded", 64, 60, ["--steps", "2500", "--side", "48"], 20, True),
 ]
