@@ -84,6 +84,17 @@ Vec3 color_of(const PixelMean& mean, const float* decoded, const Vec3& backgroun
          (1 - mean.opacity) * background;
 }
 
+// The largest weight of each hit.
+std::vector<double> largest_shares(const RayBatch& batch, const std::vector<WeightedHits>& kinds) {
+  std::vector<double> shares(batch.hits.size());
+  for_pixels(batch.rays.size(), [&](std::size_t r) {
+    for (std::size_t h = batch.first[r]; h < batch.first[r + 1]; ++h)
+      for (const WeightedHits& kind : kinds)
+        shares[h] = std::max(shares[h], kind.weights[r].weights[h - batch.first[r]]);
+  });
+  return shares;
+}
+
 }  // namespace
 
 double Reconstruction::pixel_step(bool features_only) {
@@ -153,12 +164,7 @@ double Reconstruction::pixel_step(bool features_only) {
   std::vector<FieldPoint> feature_points;
   fields_.features->backpropagate(shown.points, feature_slopes, features_only ? nullptr : &feature_points);
   if (!features_only) {
-    std::vector<double> shares(batch.hits.size());
-    for_pixels(batch.rays.size(), [&](std::size_t r) {
-      for (std::size_t h = batch.first[r]; h < batch.first[r + 1]; ++h)
-        shares[h] =
-            std::max(kinds[0].weights[r].weights[h - batch.first[r]], kinds[1].weights[r].weights[h - batch.first[r]]);
-    });
+    const std::vector<double> shares = largest_shares(batch, kinds);
     update_geometry(batch, alpha_slopes, feature_points, shown.hits, shares,
                     static_cast<double>(count * each * plan_.pixel_hits), now);
   }

@@ -30,7 +30,8 @@ class SceneField {
   virtual void reset_optimiser() = 0;
   /// Appends the parameters and the optimiser's state to `bytes`.
   virtual void save(std::string& bytes) const = 0;
-  /// The inverse; removes what it reads from the front of `bytes`. Throws Error for bytes of another field.
+  /// The inverse of save(). Removes the bytes of this field from the front of `bytes`. Throws Error for those of
+  /// another field.
   virtual void load(std::string_view& bytes) = 0;
 };
 
