@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -42,6 +44,44 @@ ReconstructionOptions options_of(const TrainAction& action) {
   options.samples = action.samples;
   options.fresh = action.fresh;
   return options;
+}
+
+constexpr const char* report_name = "rebake_training.json";
+
+// Throws FileError if the report would replace a file of the user.
+void check_report_is_ours(const fs::path& file) {
+  std::error_code gone;
+  if (!fs::exists(file, gone)) return;
+  const nlohmann::json there = nlohmann::json::parse(read_file(file), nullptr, false);
+  if (!there.is_object() || !there.contains("software"))
+    throw FileError(file, "is no report of a training; move it, or choose another output folder");
+}
+
+SourceGuard sources_of(const Session& session, const TrainingObserver& observer) {
+  SourceGuard all = session.document.sources();
+  if (observer.more_sources) all.add_all(observer.more_sources(), "a source of the open document");
+  return all;
+}
+
+// Bakes coarse textures for the observer. Later looks wait until nine times the time of this one has passed.
+void show(TrainingRun& run, const TrainingObserver& observer, const Progress& progress) {
+  constexpr int samples = 5;
+  constexpr double waits = 9;
+  TrainingLook look;
+  look.rows = run.progress_rows();
+  look.cameras = run.capture().cameras;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    BakeReconstructionCounts counts;
+    look.object = bake(run.reconstruction(), {samples, false, false}, counts, progress);
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error&) {
+    // Nothing is opaque yet.
+  }
+  observer.look(look);
+  const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  run.watch_seconds = std::max(run.watch_seconds, waits * took);
 }
 
 nlohmann::json number(double value) { return std::round(value * 1000) / 1000; }
@@ -93,6 +133,7 @@ nlohmann::json report_of(const TrainingRun& run, const TrainAction& action, cons
                            {"photographs", run.reconstruction().views().photographs().size()},
                            {"seed", action.seed},
                            {"steps", run.reconstruction().plan().steps()},
+                           {"steps done", run.reconstruction().steps_done()},
                            {"side", run.reconstruction().plan().side},
                            {"minutes", number(run.seconds() / 60)},
                            {"plan", words_of(run.reconstruction().plan())},
@@ -117,19 +158,21 @@ std::vector<fs::path> TrainAction::input_files(const nlohmann::json& object) {
                           {text("held_out"), 0});
 }
 
-void run(Session& session, const TrainAction& action) {
+void run(Session& session, const TrainAction& action, const TrainingObserver& observer) {
   const ReconstructionOptions options = options_of(action);
   check(options);
   if (action.out.empty()) throw FieldError("out", "is empty");
   for (const fs::path& file : files_of_capture(options.source, options.held_out))
     session.document.protect_file(file, "a file of the capture");
-  const SourceGuard sources = session.document.sources();
-  check_can_export(action.out, sources);
+  check_can_export(action.out, sources_of(session, observer));
   const fs::path out = absolute_path(action.out), work = out.string() + ".training";
+  check_report_is_ours(out / report_name);
   Capture capture = read_capture(options.source, options.held_out, Scene{}.background, session.progress);
   for (const std::string& note : capture.notes) session.say(note);
   TrainingRun training(options, std::move(capture), Scene{}.background, work, session.say, session.progress);
   session.say(fmt::format("progress: a picture and a table in {}", work.string()));
+  training.enough = observer.enough;
+  if (observer.look) training.watch = [&](TrainingRun& now) { show(now, observer, session.progress); };
   training.train(session.progress);
   session.say("trained; if the rest is stopped, the same command goes on from here");
 
@@ -141,6 +184,7 @@ void run(Session& session, const TrainAction& action) {
   node.object = bake(training.reconstruction(), baking, counts, session.progress);
   Scene scene = with_added({}, node, NodeId::none, 0);
   scene.background = training.frame().background;
+  const SourceGuard sources = sources_of(session, observer);
   ExportOptions exporting;
   exporting.sources = sources;
   const ExportReport exported = export_scene(scene, out, exporting, session.progress);
@@ -151,7 +195,7 @@ void run(Session& session, const TrainAction& action) {
                           duration_text(training.seconds())));
   nlohmann::json report = report_of(training, action, counts, *node.object);
   report["held out"] = judge(session, training, scene);
-  write_file_atomically(out / "rebake_training.json", report.dump(1) + "\n", sources);
+  write_file_atomically(out / report_name, report.dump(1) + "\n", sources);
   training.remove_work_files();
   session.say(fmt::format("wrote the scene to {}; its rebake_training.json has the plan and all figures", action.out));
 }

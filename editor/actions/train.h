@@ -1,9 +1,18 @@
 #pragma once
 
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "editor/actions/action.h"
 #include "editor/actions/session.h"
 #include "editor/fields/values.h"
 #include "mesh_ops/reconstruction/grid_space.h"
+#include "mesh_ops/scene/object.h"
 #include "mesh_ops/scene/photo_camera.h"
 
 namespace rebake {
@@ -41,7 +50,22 @@ const ActionType& action_type<TrainAction>();
 template <>
 TrainAction read_action<TrainAction>(const nlohmann::json& object, const Scene& scene);
 
+/// The scene of a training at one moment.
+struct TrainingLook {
+  std::shared_ptr<const BakedObject> object;  ///< with coarse textures; null: nothing is opaque yet
+  std::vector<std::array<double, 3>> rows;  ///< steps, seconds, PSNR in dB of the training pixels since the row before
+  std::vector<PhotoCamera> cameras;         ///< of the photographs
+};
+
+/// Watches and ends a running training. All functions are called on its thread; each may be empty.
+struct TrainingObserver {
+  std::function<void(const TrainingLook&)> look;  ///< from time to time, at most a tenth of the time
+  std::function<bool()> enough;                   ///< whether to leave out the rest of the steps
+  std::function<SourceGuard()> more_sources;      ///< files and folders that must not be overwritten
+};
+
 /// Throws FieldError, FileError, Error for captures that cannot be trained on, and Cancelled; then a checkpoint stays.
-void run(Session& session, const TrainAction& action);
+void run(Session& session, const TrainAction& action, const TrainingObserver& observer);
+inline void run(Session& session, const TrainAction& action) { run(session, action, {}); }
 
 }  // namespace rebake

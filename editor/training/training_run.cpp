@@ -186,7 +186,7 @@ void TrainingRun::show_progress(double mean_error, const Progress& progress) {
   } catch (const FileError& error) {
     say_(fmt::format("warning: {}", error.what()));
   }
-  if (watch) watch(*reconstruction_);
+  if (watch) watch(*this);
 }
 
 void TrainingRun::train(const Progress& progress) {
@@ -244,6 +244,11 @@ void TrainingRun::train(const Progress& progress) {
       progress.at(fmt::format("training {}{}{}, step {} of {}", name_of(stage), rest,
                               psnr > 0 ? fmt::format(", {:.1f} dB", psnr) : "", done, total),
                   0.95 * work / all_work);
+      if (enough && enough()) {
+        write_state();
+        say_(fmt::format("ends early, after step {} of {}", done, total));
+        break;
+      }
     }
   } catch (const Cancelled&) {
     const bool kept = write_state();

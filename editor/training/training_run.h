@@ -23,10 +23,12 @@ class TrainingRun {
   TrainingRun(const ReconstructionOptions& options, Capture capture, const Vec3& background, std::filesystem::path work,
               Say say, const Progress& progress);
 
-  /// Trains to the end. If it is cancelled, writes a checkpoint and throws Cancelled.
+  /// Trains to the end, or until enough(). If it is cancelled, writes a checkpoint and throws Cancelled.
   void train(const Progress& progress);
   /// Called about every `watch_seconds` with the state, if set.
-  std::function<void(const Reconstruction&)> watch;
+  std::function<void(TrainingRun&)> watch;
+  /// Asked after each step whether to leave out the others, if set.
+  std::function<bool()> enough;
   double watch_seconds = 20;
 
   /// Its training photographs are those of reconstruction().

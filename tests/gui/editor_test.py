@@ -12,6 +12,7 @@ from file_cases import FileTest
 from input_cases import InputTest, NoWindowTest
 from node_cases import NodeTest
 from select_cases import SelectTest
+from training_cases import TrainingTest
 from view_cases import ViewTest
 
 if __name__ == "__main__":

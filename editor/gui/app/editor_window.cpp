@@ -230,6 +230,8 @@ class EditorWindow {
       editor_.jobs.film.reset();
     } else if (!editor_.dialogs.form.empty()) {
       editor_.dialogs.form.clear();
+    } else if (editor_.dialogs.training) {
+      editor_.dialogs.training = false;
     } else if (viewport().cancel(editor_) || editor_.messages.close_failures()) {
       return;
     } else if (editor_.jobs.worker.busy()) {
@@ -295,6 +297,7 @@ class EditorWindow {
     state["messages"] = nlohmann::json::array();
     for (const std::size_t k : editor_.messages.shown()) state["messages"].push_back(editor_.messages.log()[k].text);
     state["asks"] = asks();
+    state["training"] = {{"runs", editor_.training.runs()}, {"triangles", trained_triangles()}};
     state["scale"] = scale_;
     state["window"] = {window().width(), window().height()};
     state["programs"] = {{"all_made", viewport().all_made()},
@@ -302,6 +305,8 @@ class EditorWindow {
     state["longest_pause_ms"] = std::lround(longest_pause_ms_);
     announce::frame(state);
   }
+
+  std::size_t trained_triangles() const { return editor_.beside ? editor_.beside->object->triangle_count() : 0; }
 
   static std::string command_of_tool(ToolKind kind) {
     for (const ToolButton& button : tool_buttons())

@@ -172,6 +172,7 @@ void Viewport::navigate(EditorContext& editor, const ViewportProjection& lens, c
 // preview and guides.
 Box Viewport::drawn_bounds(const EditorContext& editor) const {
   Box box = world_bounds(editor.scene());
+  if (editor.beside) box.extend(editor.beside->object->bounds());
   if (!editor.view.camera.orthographic()) return box;
   if (editor.preview) box.extend(world_bounds(editor.shown()));
   for (const Guides::Line& line : guides(editor).lines) box.extend(line.from).extend(line.to);
@@ -296,7 +297,7 @@ void Viewport::picture(EditorContext& editor) {
 // Thumbnails use the first picture at full quality, even if the view still moves: a fast driver does not draw it again
 // when the view rests.
 void Viewport::write_thumbnails(const EditorContext& editor) {
-  if (editor.view.flying || editor.preview || arrival_ || texture_ == 0) return;
+  if (editor.view.flying || editor.preview || editor.beside || arrival_ || texture_ == 0) return;
   scene_thumbnails_.write_for_recovery(editor, renderer_);
   scene_thumbnails_.write_for_recent_files(editor, renderer_);
 }

@@ -81,6 +81,7 @@ void WindowLayout::draw(Viewport& viewport, const std::vector<std::array<double,
   if (!std::exchange(views_shown_, false)) viewport.thumbnails().forget_views();
   palette_.draw(editor_);
   form_.draw(editor_, editor_.dialogs, editor_.view.alone ? screen.x : screen.x - side_width(screen));
+  training_.draw(editor_, editor_.view.alone ? screen.x : screen.x - side_width(screen));
   draw_keys_sheet(editor_.dialogs, editor_.settings);
 }
 
@@ -295,6 +296,15 @@ void WindowLayout::status() {
     std::string what = now.what.empty() ? now.title : now.title + ": " + now.what;
     std::replace(what.begin(), what.end(), '_', ' ');
     ImGui::TextUnformatted(what.c_str());
+  } else if (editor_.training.state() == TrainingJob::State::running ||
+             editor_.training.state() == TrainingJob::State::keeping) {
+    const Worker::Status now = editor_.training.status();
+    if (ui::quiet_icon(icons::image_multiple, "Training")) editor_.dialogs.training = true;
+    ui::tip("Train from photographs");
+    ImGui::SameLine();
+    ImGui::ProgressBar(static_cast<float>(now.share), {px(160), px(6)}, "");
+    ImGui::SameLine();
+    ImGui::TextUnformatted(now.what.c_str());
   } else if (viewport_->arrived() < 1) {
     ImGui::ProgressBar(static_cast<float>(viewport_->arrived()), {px(160), px(6)}, "");
     ImGui::SameLine();

@@ -5,6 +5,7 @@
 
 #include "editor/gui/app/viewport.h"
 #include "editor/gui/panels/panels.h"
+#include "editor/gui/panels/training_form.h"
 #include "editor/gui/state/commands.h"
 
 namespace rebake {
@@ -41,6 +42,7 @@ class WindowLayout {
   ScriptPanel script_;
   PalettePanel palette_;
   EditForm form_;
+  TrainingForm training_;
   float options_height_ = 0;              ///< height of the tool options in the last frame, in pixels
   float menu_height_ = 0;                 ///< height of the menu bar, in pixels
   bool views_shown_ = false;              ///< the views panel was drawn in this frame

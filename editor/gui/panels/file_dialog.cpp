@@ -157,6 +157,9 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       editor.edit(edit);
       break;
     }
+    case FileDialogPurpose::photographs:
+      editor.dialogs.photographs = path.string();
+      break;
     default:
       editor.project.run_script(path);
   }

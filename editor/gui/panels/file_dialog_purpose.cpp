@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "editor/gui/panels/folder_list.h"
+#include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/formats.h"
 
 namespace rebake {
@@ -30,6 +31,9 @@ constexpr FileDialogText questions[] = {
     {FileDialogPurpose::run_script, "Run script", "A script file with one edit or action per line.", "Run", ".jsonl"},
     {FileDialogPurpose::light_picture, "Environment map", "An equirectangular picture, twice as wide as high.", "Use",
      "", ".exr .hdr .png .jpg .jpeg .tif .tiff .webp"},
+    {FileDialogPurpose::photographs, "Photographs",
+     "A folder with photographs and their cameras, or its camera file (transforms.json, COLMAP, poses_bounds.npy).",
+     "Use", "", ".json .npy"},
 };
 
 }  // namespace
@@ -50,7 +54,7 @@ std::string listed_endings(FileDialogPurpose kind) {
 
 bool reads(FileDialogPurpose kind) {
   return kind == FileDialogPurpose::open || kind == FileDialogPurpose::run_script ||
-         kind == FileDialogPurpose::light_picture;
+         kind == FileDialogPurpose::light_picture || kind == FileDialogPurpose::photographs;
 }
 
 bool makes_film(FileDialogPurpose kind) {
@@ -66,6 +70,8 @@ std::string problem_with(const fs::path& path, FileDialogPurpose kind) {
   if (!writes && !fs::exists(path, error)) return "File not found: " + path.string() + ".";
   if (kind == FileDialogPurpose::light_picture)
     return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file. Choose a picture file.";
+  if (kind == FileDialogPurpose::photographs)
+    return camera_format_at(path) != nullptr ? "" : path.filename().string() + " has no cameras in a known format.";
   if (!writes && fs::is_directory(path, error) && !holds_scene(path))
     return path.filename().string() + " is not a scene in a known format.";
   return "";

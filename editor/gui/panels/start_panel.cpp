@@ -51,7 +51,7 @@ void entry(EditorContext& editor, const char* icon, const std::string& path) {
 }  // namespace
 
 void draw_start(EditorContext& editor, Thumbnails& thumbnails, const ImVec2& middle) {
-  if (!editor.scene().roots.empty() || editor.jobs.worker.busy()) return;
+  if (!editor.scene().roots.empty() || editor.jobs.worker.busy() || editor.beside || editor.dialogs.training) return;
   const float width = px(420);
   ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, px(520)});

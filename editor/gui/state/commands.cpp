@@ -256,6 +256,8 @@ const std::vector<Command>& command_table() {
       {"File", "Save as script...", "", "", "Saves the steps as a script that can be replayed on other scenes.",
        has_scene, ask<FileDialogPurpose::save_script>},
       {"File", "Run script...", "", "", "Runs a script on this scene.", always, ask<FileDialogPurpose::run_script>},
+      {"File", "Train from photographs...", "", "", "Makes a scene from photographs with known cameras.", always,
+       [](EditorContext& editor) { editor.dialogs.training = true; }},
       {"File", "Discarded work...", "", "", "Lists unsaved work that was discarded in the last 30 days.", always,
        show_discarded},
       {"File", "Quit", "Ctrl+Q", "Ctrl+Q", "Closes the window. Asks first if there is unsaved work.", always,

@@ -38,6 +38,12 @@ std::shared_ptr<const AppliedEdits> wait_for_preview(
 DocumentEditor::DocumentEditor(const std::function<void()>& wake)
     : previews(wake), jobs(wake), now(jobs.worker.snapshot()) {}
 
+Scene DocumentEditor::shown() const {
+  Scene result = preview && preview->of == scene().roots ? preview->scene : scene();
+  if (beside) result.roots.push_back(beside);
+  return result;
+}
+
 bool DocumentEditor::take_news() {
   at_rest_ = !jobs.worker.busy();
   std::vector<Worker::Message> news = jobs.worker.take_messages();
@@ -254,7 +260,7 @@ std::vector<NodeId> DocumentEditor::active_tops() const {
 Box DocumentEditor::focus() const {
   Box box;
   for (const NodeId id : active) box.extend(subtree_bounds(scene(), id));
-  return box.isEmpty() ? world_bounds(scene()) : box;
+  return box.isEmpty() ? world_bounds(shown()) : box;
 }
 
 std::vector<std::optional<NodeRef>> DocumentEditor::scope(bool selected) const {

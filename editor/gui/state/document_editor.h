@@ -41,8 +41,10 @@ struct DocumentEditor {
   void show_preview(std::vector<Edit> list, std::optional<Scene> from = {}, Previews::Make quick = {});
   /// Hides the preview and cancels its computation.
   void drop_preview();
-  /// The scene that the viewport draws: the preview, if it belongs to the current scene.
-  const Scene& shown() const { return preview && preview->of == scene().roots ? preview->scene : scene(); }
+  /// A node that is drawn beside the scene, but is not part of the document; null for none.
+  NodePtr beside;
+  /// The scene that the viewport draws: the preview, if it belongs to the current scene, and `beside`.
+  Scene shown() const;
 
   /// Whether no job was running or waiting when `now` was fetched, so that it equals the document.
   bool at_rest() const { return at_rest_; }

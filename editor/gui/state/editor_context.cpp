@@ -12,7 +12,8 @@ namespace rebake {
 EditorContext::EditorContext(Settings with, const std::function<void()>& wake)
     : ToolContext(std::move(with), wake),
       relighter(wake),
-      project(jobs.worker, settings, messages, now, [this] { view.camera = framing_camera(scene(), view.aspect()); }) {
+      project(jobs.worker, settings, messages, now, [this] { view.camera = framing_camera(scene(), view.aspect()); }),
+      training(jobs.worker, wake) {
   project.begin_journal();
 }
 
@@ -26,6 +27,23 @@ void EditorContext::update() {
     }
   }
   call_finished();
+  take_training();
+}
+
+// The first look at a training is from its first photograph, if there is nothing else to see.
+void EditorContext::take_training() {
+  const std::optional<std::string> trained = training.update(messages);
+  const bool appears = !beside && training.node();
+  beside = training.node();
+  if (appears && awaits_first_scene_) {
+    awaits_first_scene_ = false;
+    std::vector<std::string> notes;
+    view.camera = views_of(training.cameras(), notes).front();
+  }
+  if (!trained) return;
+  messages.say("Trained " + *trained + ".");
+  dialogs.training = false;
+  project.open({*trained});
 }
 
 void EditorContext::frame_view() {

@@ -6,6 +6,7 @@
 #include "editor/gui/state/document_files.h"
 #include "editor/gui/state/relighter.h"
 #include "editor/gui/state/tool_context.h"
+#include "editor/gui/state/training_job.h"
 
 namespace rebake {
 
@@ -18,6 +19,7 @@ struct EditorContext : ToolContext {
   DialogState dialogs;
   Relighter relighter;
   Project project;
+  TrainingJob training;
 
   /// Fetches snapshot, messages and finished callbacks from the worker, and the latest preview. Call once per frame.
   void update();
@@ -25,6 +27,7 @@ struct EditorContext : ToolContext {
   void frame_view();
 
  private:
+  void take_training();
   bool awaits_first_scene_ = true;  ///< no scene was shown yet: the first one is to be framed
 };
 
