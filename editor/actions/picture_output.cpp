@@ -17,6 +17,13 @@ std::vector<std::filesystem::path> files_of(const PictureContent& content, const
                                                      : std::vector<std::filesystem::path>{out};
 }
 
+void refuse_replacing_unnamed(const std::filesystem::path& file, const std::filesystem::path& out) {
+  std::error_code error;
+  if (file == out || !std::filesystem::exists(std::filesystem::symlink_status(file, error))) return;
+  if (std::filesystem::is_symlink(file, error) || !is_rendered_picture(file))
+    throw FileError(file, "exists and was not made by Rebake, or is a link; choose another name");
+}
+
 void check(const PictureContent& content, const std::filesystem::path& out, int width, int height) {
   check_pass_names(content.passes);
   if (!content.passes.empty() && out.extension() != ".exr")

@@ -29,6 +29,10 @@ struct PictureContent {
   }
 };
 
+/// Throws FileError if `file`, one of files_of(), would replace a link or another program's picture that the user has
+/// not named: a file of a pass.
+void refuse_replacing_unnamed(const std::filesystem::path& file, const std::filesystem::path& out);
+
 /// The files that are written for `out`: itself, or one for each pass.
 std::vector<std::filesystem::path> files_of(const PictureContent& content, const std::filesystem::path& out);
 

@@ -17,6 +17,7 @@ void run(Session& session, const RenderAction& action) {
   for (const std::filesystem::path& file : files_of(action.content, action.out)) {
     check_picture_path(file, session.document.sources());
     refuse_replacing_work(file);
+    refuse_replacing_unnamed(file, action.out);
   }
   check(action.content, action.out, action.width, action.height);
   const Scene all = action.time ? scene_at(session.scene(), *action.time) : session.scene();

@@ -63,23 +63,23 @@ SourceGuard sources_of(const Session& session, const TrainingObserver& observer)
   return all;
 }
 
-// Bakes coarse textures for the observer. Later looks wait until nine times the time of this one has passed.
+// Bakes coarse textures for the observer. The next preview waits until nine times the time of this one has passed.
 void show(TrainingRun& run, const TrainingObserver& observer, const Progress& progress) {
   constexpr int samples = 5;
   constexpr double waits = 9;
-  TrainingLook look;
-  look.rows = run.progress_rows();
-  look.cameras = run.capture().cameras;
+  TrainingPreview preview;
+  preview.rows = run.progress_rows();
+  preview.cameras = run.capture().cameras;
   const auto start = std::chrono::steady_clock::now();
   try {
     BakeReconstructionCounts counts;
-    look.object = bake(run.reconstruction(), {samples, false, false}, counts, progress);
+    preview.object = bake(run.reconstruction(), {samples, false, false}, counts, progress);
   } catch (const Cancelled&) {
     throw;
   } catch (const Error&) {
     // Nothing is opaque yet.
   }
-  observer.look(look);
+  observer.preview(preview);
   const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.watch_seconds = std::max(run.watch_seconds, waits * took);
 }
@@ -172,9 +172,11 @@ void run(Session& session, const TrainAction& action, const TrainingObserver& ob
   TrainingRun training(options, std::move(capture), Scene{}.background, work, session.say, session.progress);
   session.say(fmt::format("progress: a picture and a table in {}", work.string()));
   training.enough = observer.enough;
-  if (observer.look) training.watch = [&](TrainingRun& now) { show(now, observer, session.progress); };
+  training.goes_on_unsaved = observer.goes_on_unsaved;
+  if (observer.preview)
+    training.watch = [&](TrainingRun& now, const Progress& progress) { show(now, observer, progress); };
   training.train(session.progress);
-  session.say("trained; if the rest is stopped, the same command goes on from here");
+  if (training.is_saved()) session.say("trained; if the rest is stopped, the same command goes on from here");
 
   BakeReconstructionOptions baking;
   baking.samples = action.samples;

@@ -51,7 +51,7 @@ template <>
 TrainAction read_action<TrainAction>(const nlohmann::json& object, const Scene& scene);
 
 /// The scene of a training at one moment.
-struct TrainingLook {
+struct TrainingPreview {
   std::shared_ptr<const BakedObject> object;  ///< with coarse textures; null: nothing is opaque yet
   std::vector<std::array<double, 3>> rows;  ///< steps, seconds, PSNR in dB of the training pixels since the row before
   std::vector<PhotoCamera> cameras;         ///< of the photographs
@@ -59,9 +59,11 @@ struct TrainingLook {
 
 /// Watches and ends a running training. All functions are called on its thread; each may be empty.
 struct TrainingObserver {
-  std::function<void(const TrainingLook&)> look;  ///< from time to time, at most a tenth of the time
-  std::function<bool()> enough;                   ///< whether to leave out the rest of the steps
-  std::function<SourceGuard()> more_sources;      ///< files and folders that must not be overwritten
+  std::function<void(const TrainingPreview&)> preview;  ///< from time to time, at most a tenth of the time
+  std::function<bool()> enough;                         ///< whether to leave out the rest of the steps
+  std::function<SourceGuard()> more_sources;            ///< files and folders that must not be overwritten
+  /// Whether a training that is to stop goes on instead, because its checkpoint cannot be written.
+  std::function<bool(const std::string& problem)> goes_on_unsaved;
 };
 
 /// Throws FieldError, FileError, Error for captures that cannot be trained on, and Cancelled; then a checkpoint stays.

@@ -251,6 +251,7 @@ void render(const Rendering& options) {
   for (const std::filesystem::path& file : files_of(options.content, options.out)) {
     if (!options.out.empty()) check_picture_path(file, sources);
     refuse_replacing_work(file);
+    refuse_replacing_unnamed(file, options.out);
   }
   options.view.set_background(scene);
   if (options.at) scene = scene_at(scene, *options.at);

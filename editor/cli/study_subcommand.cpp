@@ -19,6 +19,7 @@ void describe_study(SubcommandDescription& command) {
     std::string name, out, photographs;
     std::vector<std::string> scenes;
     int frames = 9;
+    DprtOptions dprt;
     FolderOptions reading;
     ViewOptions view;
   };
@@ -32,6 +33,20 @@ void describe_study(SubcommandDescription& command) {
   command.option("--frames", options->frames, "timed frames per variant", "N [9]").between(1, 1000);
   command.option("--photos", options->photographs,
                  "training: photographs of the scene, as for train; default: pictures of it", "CAMERAS");
+  command.option("--object", options->dprt.object,
+                 "dprt: head, fish, cloth, space (shapes between head and plane) or all", "NAME [cloth]");
+  command.option("--meshes", options->dprt.meshes, "dprt: files with one mesh per frame instead (OBJ, OFF, PLY)",
+                 "'PATTERN'");
+  command.option("--side", options->dprt.side, "dprt: texels per side", "N [64]").between(32, 1024);
+  command
+      .option("--channels", options->dprt.channels, "dprt: channels of the network's finest level; published: 32",
+              "N [16]")
+      .between(8, 128);
+  command.option("--epochs", options->dprt.epochs, "dprt: passes over the frames; published: 500 to 1000", "N [30]")
+      .between(1, 100000);
+  command.flag("--cuda", options->dprt.cuda, "dprt: train on the graphics card");
+  command.flag("--paper", options->dprt.paper,
+               "dprt: the published sizes: side 256 (fish 512), 32 channels, 500 epochs");
   options->view.add_to(command);
   options->reading.add_to(command);
   command.does([options] {
@@ -50,8 +65,9 @@ void describe_study(SubcommandDescription& command) {
         if (!renderer) renderer = std::make_unique<Renderer>();
         return *renderer;
       };
-      const StudyTable table = study.run(
-          {on_demand, scene, options->view.view(scene), options->frames, progress_bar(), options->photographs});
+      const StudyTable table =
+          study.run({on_demand, scene, options->view.view(scene), options->frames, progress_bar(), options->photographs,
+                     options->out, [](const std::string& line) { fmt::print("{}\n", line); }, options->dprt});
       clear_progress_bar();
       std::size_t width = 6;
       for (const StudyTable::Row& row : table.rows) width = std::max(width, row.choice.size());

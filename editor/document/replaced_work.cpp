@@ -43,8 +43,23 @@ void refuse_replacing_photographs(const fs::path& path, const fs::path& folder) 
 
 }  // namespace
 
+namespace {
+
+// Pictures among those of a film would count as the film's when it goes on.
+void refuse_replacing_film(const fs::path& path) {
+  const fs::path record = absolute_path(path).parent_path() / "film.json";
+  const std::string name = path.stem().string();
+  std::error_code error;
+  if (name.empty() || name.find_first_not_of("0123456789") != std::string::npos) return;
+  if (fs::is_regular_file(record, error) && is_picture_file(path))
+    throw FileError(path, "would be a picture of the film in its folder (film.json); name another folder");
+}
+
+}  // namespace
+
 void refuse_replacing_work(const fs::path& path) {
   Journal::refuse_overwriting(path);
+  refuse_replacing_film(path);
   // Reading large pictures only to look for a project would be slow; projects have their extension.
   if (is_project_file(path) && holds_project(path))
     throw FileError(path, "is a project, whose edits would be lost; name another file");

@@ -11,7 +11,7 @@ namespace rebake {
 bool holds_project(const std::filesystem::path& path);
 
 /// For outputs that are no projects: throws FileError if the file is a journal or a project, whose edits would be lost,
-/// a file of a scene folder, or a photograph or mask of a capture.
+/// a file of a scene folder, a photograph or mask of a capture, or has the name of a picture of the film in its folder.
 void refuse_replacing_work(const std::filesystem::path& path);
 
 /// For every project that is written: throws FileError if the file exists and is no project, or one of a newer version.

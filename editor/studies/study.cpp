@@ -146,6 +146,24 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
 
 }  // namespace
 
+void write_line_plot(const std::string& title, const std::string& x, const std::string& y, bool log_y,
+                     const std::vector<PlottedLine>& lines, const std::string& base) {
+  std::string data, drawn;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    data += fmt::format("$line{} << EOD\n", k);
+    for (const auto& [at, value] : lines[k].points) data += fmt::format("{} {}\n", at, value);
+    data += "EOD\n";
+    drawn += fmt::format("{}$line{} using 1:2 with lines lw 2 title \"{}\"", k == 0 ? "" : ", ", k, lines[k].name);
+  }
+  const std::string plot =
+      fmt::format("{}set title \"{}\"\nset xlabel \"{}\"\nset ylabel \"{}\"\n{}set grid\nset key outside right top\n",
+                  data, title, x, y, log_y ? "set logscale y\n" : "");
+  for (const auto& [terminal, extension] :
+       {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
+    write_file_atomically(base + "." + extension,
+                          run_gnuplot(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, drawn)), {});
+}
+
 void prepare_study_folder(const Study& study, const std::filesystem::path& folder, const SourceGuard& guard) {
   guard.check_file(folder / study.name);
   std::error_code error;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -26,6 +27,17 @@ struct StudyTable {
   std::optional<std::size_t> second_x = std::nullopt;  ///< column for the x axis of a second plot, NAME-2
 };
 
+/// Options of the study of deep precomputed radiance transfer.
+struct DprtOptions {
+  std::string object = "cloth";  ///< head, fish, cloth, space (of shapes between head and plane), or all
+  std::string meshes;            ///< pattern of files with one mesh per frame, instead of `object`; empty: none
+  int side = 64;                 ///< texels per side of the geometry images
+  int channels = 16;             ///< of the network's finest level
+  int epochs = 30;
+  bool cuda = false;   ///< train on the graphics card
+  bool paper = false;  ///< the published sizes instead of `side`, `channels` and `epochs`
+};
+
 /// Input of a study.
 struct StudyInput {
   std::function<Renderer&()> renderer;  ///< created on first use; throws DeviceError without OpenGL
@@ -33,7 +45,10 @@ struct StudyInput {
   View view;
   int frames;  ///< number of timed frames per choice; the median is reported
   Progress progress;
-  std::string photographs = {};  ///< camera file of photographs of the scene; empty: pictures of it
+  std::string photographs = {};       ///< camera file of photographs of the scene; empty: pictures of it
+  std::filesystem::path folder = {};  ///< for further files of the study
+  std::function<void(const std::string&)> say = [](const std::string&) {};  ///< outputs a message of one line
+  DprtOptions dprt = {};
 };
 
 /// A subject of `rebake study`.
@@ -60,6 +75,7 @@ StudyTable study_fill(const StudyInput& input);
 StudyTable study_filtering(const StudyInput& input);
 StudyTable study_publish(const StudyInput& input);
 StudyTable study_training(const StudyInput& input);
+StudyTable study_dprt(const StudyInput& input);
 
 /// All studies, in the order of `rebake study --help`.
 inline constexpr Study study_table[] = {
@@ -79,6 +95,8 @@ inline constexpr Study study_table[] = {
     {"filtering", "linear filtering by finer textures: memory, error of colours, frame time", study_filtering},
     {"publish", "web pages: position bits, texture coding, moving resolution", study_publish},
     {"training", "training from photographs: steps, grid size, losses; time, size and error", study_training},
+    {"dprt", "deep precomputed radiance transfer as published, against linear models, rotation and tracing",
+     study_dprt},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
 
@@ -100,6 +118,15 @@ double median_milliseconds(int repeats, const std::function<void()>& run);
 /// cannot be written or `guard` protects it, and Error if gnuplot, which plots need, is missing.
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
                  const SourceGuard& guard);
+/// A line of a line_plot(): points in the order of x.
+struct PlottedLine {
+  std::string name;
+  std::vector<std::array<double, 2>> points;
+};
+/// Writes BASE.svg and BASE.png. Throws FileError, and Error if gnuplot is missing. `log_y`: logarithmic.
+void write_line_plot(const std::string& title, const std::string& x, const std::string& y, bool log_y,
+                     const std::vector<PlottedLine>& lines, const std::string& base);
+
 /// Creates the folder and checks all outputs, so that problems are found before the measurement. Throws FileError.
 void prepare_study_folder(const Study& study, const std::filesystem::path& folder, const SourceGuard& guard);
 

@@ -164,9 +164,11 @@ bool TrainingRun::write_state() {
                                {"rows", rows_}};
   try {
     write_checkpoint(work_ / checkpoint_name, head, reconstruction_->save());
+    problem_.clear();
     return true;
   } catch (const FileError& error) {
-    say_(fmt::format("warning: the checkpoint could not be written: {}", error.what()));
+    problem_ = error.what();
+    say_(fmt::format("warning: the checkpoint could not be written: {}", problem_));
     return false;
   }
 }
@@ -186,75 +188,83 @@ void TrainingRun::show_progress(double mean_error, const Progress& progress) {
   } catch (const FileError& error) {
     say_(fmt::format("warning: {}", error.what()));
   }
-  if (watch) watch(*this);
+  if (watch) watch(*this, progress);
+}
+
+// Work of the first steps; counted in steps without empty cells left out.
+double TrainingRun::work_of(std::size_t steps) const {
+  TrainingPlan part = reconstruction_->plan();
+  const auto take = [&](std::size_t& count) {
+    count = std::min(count, steps);
+    steps -= count;
+  };
+  std::size_t culled = part.soft_steps - part.open_steps;
+  take(part.open_steps);
+  take(culled);
+  part.soft_steps = part.open_steps + culled;
+  take(part.binary_steps);
+  take(part.feature_steps);
+  return open_steps_of_time(part);
+}
+
+// One step with what is due after it: checkpoint, preview, messages, progress.
+void TrainingRun::advance(Loop& loop, const Progress& progress) {
+  const TrainingStage stage = reconstruction_->stage();
+  loop.error += reconstruction_->step();
+  ++loop.errors;
+  const double now = seconds_since(start_);
+  const std::size_t done = reconstruction_->steps_done(), total = reconstruction_->plan().steps();
+  const bool ends_stage = reconstruction_->stage() != stage;
+  // Before the preview, which may take a moment in which the program can be stopped.
+  if (ends_stage || now - loop.saved > seconds_between_checkpoints) {
+    write_state();
+    loop.saved = seconds_since(start_);
+  }
+  constexpr double until_first_preview = 5;
+  if (ends_stage || now - loop.shown > watch_seconds || (loop.shown == 0 && now > until_first_preview)) {
+    loop.shown = now;
+    const double error = loop.error / static_cast<double>(loop.errors);
+    loop.psnr = psnr_of(error);
+    // Keeps the text of the progress.
+    show_progress(error, Progress([&](std::string_view, double) { progress.at(loop.text, loop.share); }));
+    loop.error = 0;
+    loop.errors = 0;
+  }
+  if (ends_stage)
+    say_(fmt::format("{} done after {}: {:.2f} dB on training pixels", name_of(stage), duration_text(seconds()),
+                     loop.psnr));
+  if (ends_stage && stage == TrainingStage::soft && reconstruction_->plan().gains)
+    say_(reconstruction_->has_gains() ? fmt::format("exposures differ by {:.0f} %: each photograph has a gain",
+                                                    100 * reconstruction_->exposure_spread())
+                                      : std::string("exposures agree: no gains"));
+  const double work = work_of(done), more = work - loop.work_before, all = work_of(total);
+  const std::string rest = more > 10 ? about + remaining((all - work) * now / more) : std::string();
+  loop.text = fmt::format("training {}{}{}, step {} of {}", name_of(stage), rest,
+                          loop.psnr > 0 ? fmt::format(", {:.1f} dB", loop.psnr) : "", done, total);
+  loop.share = 0.95 * work / all;
+  progress.at(loop.text, loop.share);
 }
 
 void TrainingRun::train(const Progress& progress) {
   start_ = std::chrono::steady_clock::now();
-  const std::size_t first = reconstruction_->steps_done(), total = reconstruction_->plan().steps();
-  // Work is counted in steps without empty cells left out.
-  const auto work_of = [&](std::size_t steps) {
-    TrainingPlan part = reconstruction_->plan();
-    const auto take = [&](std::size_t& count) {
-      count = std::min(count, steps);
-      steps -= count;
-    };
-    std::size_t culled = part.soft_steps - part.open_steps;
-    take(part.open_steps);
-    take(culled);
-    part.soft_steps = part.open_steps + culled;
-    take(part.binary_steps);
-    take(part.feature_steps);
-    return open_steps_of_time(part);
-  };
-  const double all_work = work_of(total), work_before = work_of(first);
-  double shown = 0, saved = 0, error = 0, psnr = 0;
-  std::size_t errors = 0;
-  try {
-    while (reconstruction_->stage() != TrainingStage::done) {
-      const TrainingStage stage = reconstruction_->stage();
-      error += reconstruction_->step();
-      ++errors;
-      const double now = seconds_since(start_);
-      const std::size_t done = reconstruction_->steps_done();
-      const bool ends_stage = reconstruction_->stage() != stage;
-      // Before the preview, which may take a moment in which the program can be stopped.
-      if (ends_stage || now - saved > seconds_between_checkpoints) {
-        write_state();
-        saved = seconds_since(start_);
-      }
-      constexpr double first_look = 5;
-      if (ends_stage || now - shown > watch_seconds || (shown == 0 && now > first_look)) {
-        shown = now;
-        psnr = psnr_of(error / static_cast<double>(errors));
-        show_progress(error / static_cast<double>(errors), progress);
-        error = 0;
-        errors = 0;
-      }
-      if (ends_stage)
-        say_(fmt::format("{} done after {}: {:.2f} dB on training pixels", name_of(stage), duration_text(seconds()),
-                         psnr));
-      if (ends_stage && stage == TrainingStage::soft && reconstruction_->plan().gains)
-        say_(reconstruction_->has_gains() ? fmt::format("exposures differ by {:.0f} %: each photograph has a gain",
-                                                        100 * reconstruction_->exposure_spread())
-                                          : std::string("exposures agree: no gains"));
-      const double work = work_of(done);
-      const std::string rest =
-          work > work_before + 10 ? about + remaining((all_work - work) * now / (work - work_before)) : std::string();
-      progress.at(fmt::format("training {}{}{}, step {} of {}", name_of(stage), rest,
-                              psnr > 0 ? fmt::format(", {:.1f} dB", psnr) : "", done, total),
-                  0.95 * work / all_work);
-      if (enough && enough()) {
-        write_state();
-        say_(fmt::format("ends early, after step {} of {}", done, total));
-        break;
-      }
+  Loop loop;
+  loop.work_before = work_of(reconstruction_->steps_done());
+  const std::size_t total = reconstruction_->plan().steps();
+  // Whether the training may stop here. Without a checkpoint all of its work would be lost.
+  const auto may_stop = [&] { return write_state() || !goes_on_unsaved || !goes_on_unsaved(problem_); };
+  while (reconstruction_->stage() != TrainingStage::done) {
+    try {
+      advance(loop, progress);
+    } catch (const Cancelled&) {
+      if (!may_stop()) continue;
+      say_(fmt::format("stopped at step {} of {}; the same command goes on from {}", reconstruction_->steps_done(),
+                       total, is_saved() ? "there" : "the last checkpoint, if there is one"));
+      throw;
     }
-  } catch (const Cancelled&) {
-    const bool kept = write_state();
-    say_(fmt::format("stopped at step {} of {}; the same command goes on from {}", reconstruction_->steps_done(), total,
-                     kept ? "there" : "the last checkpoint, if there is one"));
-    throw;
+    if (enough && enough() && may_stop()) {
+      say_(fmt::format("ends early, after step {} of {}", reconstruction_->steps_done(), total));
+      return;
+    }
   }
 }
 

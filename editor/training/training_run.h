@@ -25,10 +25,13 @@ class TrainingRun {
 
   /// Trains to the end, or until enough(). If it is cancelled, writes a checkpoint and throws Cancelled.
   void train(const Progress& progress);
-  /// Called about every `watch_seconds` with the state, if set.
-  std::function<void(TrainingRun&)> watch;
+  /// Called about every `watch_seconds`, if set.
+  std::function<void(TrainingRun&, const Progress&)> watch;
   /// Asked after each step whether to leave out the others, if set.
   std::function<bool()> enough;
+  /// Asked, if set, when the training is to stop but its checkpoint cannot be written, with the reason: whether it goes
+  /// on instead.
+  std::function<bool(const std::string& problem)> goes_on_unsaved;
   double watch_seconds = 20;
 
   /// Its training photographs are those of reconstruction().
@@ -36,6 +39,8 @@ class TrainingRun {
   const CaptureFrame& frame() const { return frame_; }
   const Reconstruction& reconstruction() const { return *reconstruction_; }
   double seconds() const;  ///< time of training, over all interruptions
+  /// Whether the last attempt to write a checkpoint succeeded.
+  bool is_saved() const { return problem_.empty(); }
   /// Rows of the table of the progress: steps, seconds, PSNR in dB of the training pixels since the row before.
   const std::vector<std::array<double, 3>>& progress_rows() const { return rows_; }
   /// Removes the files of the work folder.
@@ -44,6 +49,18 @@ class TrainingRun {
  private:
   void plan_steps(TrainingPlan& plan, const Progress& progress);
   void open_work_folder();
+  /// State of train().
+  struct Loop {
+    double work_before = 0;       ///< work of the steps before this call
+    double shown = 0, saved = 0;  ///< seconds since the start at the last preview and checkpoint
+    double error = 0;             ///< sum of the errors of `errors` steps since the last preview
+    std::size_t errors = 0;
+    double psnr = 0;   ///< at the last preview, dB
+    std::string text;  ///< of the progress
+    double share = 0;  ///< of the progress
+  };
+  double work_of(std::size_t steps) const;
+  void advance(Loop& loop, const Progress& progress);
   bool write_state();
   void show_progress(double mean_error, const Progress& progress);
 
@@ -56,7 +73,8 @@ class TrainingRun {
   std::unique_ptr<FileLock> lock_;
   std::unique_ptr<Reconstruction> reconstruction_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  double seconds_before_ = 0;  // of interrupted runs
+  double seconds_before_ = 0;  // time of training in interrupted runs
+  std::string problem_;        // why the last checkpoint could not be written; empty: it was written
   std::vector<std::array<double, 3>> rows_;
 };
 

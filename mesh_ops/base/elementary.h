@@ -3,10 +3,10 @@
 #include <cmath>
 #include <cstdint>
 
-// Arctangent, logarithm, sine and cosine of doubles from basic arithmetic only, so that edits commit the same bits on
-// every processor: C libraries choose implementations by processor, and their last bits differ. Errors are at most 2
-// units in the last place. atan2() and atan() have no branches that prevent vectorisation. They are always inlined, so
-// that files compiled for newer processors share no code with others.
+// Arctangent, exponential function, logarithm, sine and cosine of doubles from basic arithmetic only, so that edits
+// commit the same bits on every processor: C libraries choose implementations by processor, and their last bits differ.
+// Errors are at most 2 units in the last place. atan2() and atan() have no branches that prevent vectorisation. They
+// are always inlined, so that files compiled for newer processors share no code with others.
 
 namespace rebake::elementary {
 
@@ -55,6 +55,21 @@ inline double log(double x) {
            w * (2.857142874366239149e-01 + w * (1.818357216161805012e-01 + w * 1.479819860511658591e-01)));
   const double square = 0.5 * f * f;
   return k * 6.93147180369123816490e-01 - ((square - (s * (square + odd + even) + k * 1.90821492927058770002e-10)) - f);
+}
+
+/// Exponential function; 0 below −745, infinity above 710. Coefficients and ln 2 in two parts: fdlibm (1993), e_exp.
+inline double exp(double x) {
+  if (!(x < 710)) return x < 0 || x > 0 ? HUGE_VAL : x;  // also NaN
+  if (x < -745.2) return 0;
+  const double k = std::nearbyint(x * 1.44269504088896338700);
+  const double high = x - k * 6.93147180369123816490e-01, low = k * 1.90821492927058770002e-10;
+  const double r = high - low, t = r * r;
+  const double c =
+      r -
+      t * (1.66666666666666019037e-01 +
+           t * (-2.77777777770155933842e-03 +
+                t * (6.61375632143793436117e-05 + t * (-1.65339022054652515390e-06 + t * 4.13813679705723846039e-08))));
+  return std::ldexp(1 - ((low - (r * c) / (2 - c)) - high), static_cast<int>(k));
 }
 
 struct SineCosine {

@@ -116,6 +116,7 @@ MaskDecision decide(const MaskVotes& votes, double threshold) {
   MaskDecision decision;
   const std::size_t triangles = votes.seen.size();
   decision.chosen.assign(votes.votes.size(), TriangleSet(triangles, 0));
+  decision.any.assign(triangles, 0);
   double agreeing = 0, total = 0;
   for (std::size_t f = 0; f < triangles; ++f) {
     if (votes.seen[f] == 0) continue;
@@ -127,6 +128,8 @@ MaskDecision decide(const MaskVotes& votes, double threshold) {
       if (votes.votes[k][f] > most) most = votes.votes[k][f], best = k;
     }
     if (most > 0 && most >= threshold * votes.seen[f]) decision.chosen[best][f] = 1;
+    const std::uint32_t inside = votes.seen[f] - none;
+    if (inside > 0 && inside >= threshold * votes.seen[f]) decision.any[f] = 1;
     agreeing += std::max(most, none);
     total += votes.seen[f];
   }

@@ -41,6 +41,7 @@ void add_votes(std::vector<MaskVotes>& votes, const std::vector<MaskVotes>& more
 /// A decision by votes.
 struct MaskDecision {
   std::vector<TriangleSet> chosen;  ///< per label: the triangles whose votes for it reach the threshold
+  TriangleSet any;                  ///< the triangles whose votes for all labels together reach the threshold
   std::size_t seen = 0;             ///< number of triangles with votes
   double consistency = 1;           ///< mean share of the votes that agree with the most common one of their triangle
 };

@@ -87,7 +87,11 @@ TriangleSet triangles_like(const PlacedNode& placed, const TriangleAppearance& m
     if (bounds.opacity && std::abs(static_cast<double>(t.opacity) - model.opacity) > *bounds.opacity) return;
     if (bounds.size || bounds.orientation) {
       const Vec3 area = shape.area(t);
-      if (bounds.size && (area.norm() > model.area * *bounds.size || area.norm() * *bounds.size < model.area)) return;
+      // Rotated copies differ by rounding.
+      constexpr double room = 1 + 1e-9;
+      if (bounds.size &&
+          (area.norm() > room * model.area * *bounds.size || room * area.norm() * *bounds.size < model.area))
+        return;
       const Vec3 normal = area.stableNormalized();
       if (bounds.orientation && (normal.isZero(0) || normal.cross(model.normal).norm() > max_sine)) return;
     }

@@ -171,15 +171,12 @@ Outcome apply(const Scene& scene, const SelectMasks& edit, const Progress& progr
   std::size_t seen = 0, target = 0;
   double agreeing = 0;
   std::vector<std::vector<TriangleSet>> chosen;
-  Scene result = with_selected(scene, targets, edit.mode, [&](const PlacedNode& placed) {
+  Scene result = with_selected(scene, targets, edit.mode, [&](const PlacedNode&) {
     MaskDecision decision = decide(voting.votes()[target++], edit.threshold);
     seen += decision.seen;
     agreeing += decision.consistency * static_cast<double>(decision.seen);
-    TriangleSet any(placed.node->object->triangle_count(), 0);
-    for (const TriangleSet& one : decision.chosen)
-      for (std::size_t f = 0; f < any.size(); ++f) any[f] |= one[f];
     chosen.push_back(std::move(decision.chosen));
-    return any;
+    return std::move(decision.any);
   });
   if (!edit.store.empty())
     for (std::size_t t = 0; t < targets.size(); ++t)
@@ -209,7 +206,8 @@ REBAKE_DESCRIBE_EDIT(
             "only this node and its children; default: all visible, unlocked objects");
       visit("labels", edit.labels, Need::optional,
             "values of pixels, or COCO categories, that are inside, 1 to 255; default: 128 to 255, or all categories");
-      visit("threshold", edit.threshold, Need::optional, "share of the votes that a triangle needs, 0 to 1");
+      visit("threshold", edit.threshold, Need::optional,
+            "share of the votes that a triangle needs, above 0, at most 1");
       visit("store", edit.store, Need::optional,
             "with labels: stores the triangles of each as the selection \"NAME LABEL\"");
       visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");

@@ -76,6 +76,8 @@ class EditorWindow {
       }
       const auto begun = std::chrono::steady_clock::now();
       editor_.update();
+      // The form of the training changes its size, which takes Dear ImGui two frames.
+      if (std::exchange(training_, editor_.training.state()) != editor_.training.state()) frames_ = frames_after_event;
       draw();
       viewport().frame_took(
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun).count());
@@ -342,6 +344,7 @@ class EditorWindow {
   int frames_ = 0;                             ///< number of frames still to be drawn after the last event
   double longest_pause_ms_ = 0;  ///< longest time between two frames that were due, since the last key press
   std::string title_;
+  TrainingJob::State training_ = TrainingJob::State::none;  ///< in the last frame
 };
 
 }  // namespace

@@ -296,15 +296,15 @@ void WindowLayout::status() {
     std::string what = now.what.empty() ? now.title : now.title + ": " + now.what;
     std::replace(what.begin(), what.end(), '_', ' ');
     ImGui::TextUnformatted(what.c_str());
-  } else if (editor_.training.state() == TrainingJob::State::running ||
-             editor_.training.state() == TrainingJob::State::keeping) {
+  } else if (editor_.training.state() != TrainingJob::State::none) {
     const Worker::Status now = editor_.training.status();
     if (ui::quiet_icon(icons::image_multiple, "Training")) editor_.dialogs.training = true;
     ui::tip("Train from photographs");
     ImGui::SameLine();
     ImGui::ProgressBar(static_cast<float>(now.share), {px(160), px(6)}, "");
     ImGui::SameLine();
-    ImGui::TextUnformatted(now.what.c_str());
+    ImGui::TextUnformatted(editor_.training.state() == TrainingJob::State::paused ? "training paused"
+                                                                                  : now.what.c_str());
   } else if (viewport_->arrived() < 1) {
     ImGui::ProgressBar(static_cast<float>(viewport_->arrived()), {px(160), px(6)}, "");
     ImGui::SameLine();

@@ -79,7 +79,7 @@ void draw_text(const FieldInfo& field, std::string& text, json& values) {
 
 void FieldInputs::set(const std::string& field, const json& value) {
   values_[field] = value;
-  if (value.is_array()) texts_[field] = value.dump();
+  texts_[field] = value.is_string() ? value.get<std::string>() : value.dump();
 }
 
 void FieldInputs::draw(const DocumentEditor& editor, const std::vector<FieldInfo>& fields, const std::string& problem) {

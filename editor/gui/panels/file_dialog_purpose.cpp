@@ -31,9 +31,7 @@ constexpr FileDialogText questions[] = {
     {FileDialogPurpose::run_script, "Run script", "A script file with one edit or action per line.", "Run", ".jsonl"},
     {FileDialogPurpose::light_picture, "Environment map", "An equirectangular picture, twice as wide as high.", "Use",
      "", ".exr .hdr .png .jpg .jpeg .tif .tiff .webp"},
-    {FileDialogPurpose::photographs, "Photographs",
-     "A folder with photographs and their cameras, or its camera file (transforms.json, COLMAP, poses_bounds.npy).",
-     "Use", "", ".json .npy"},
+    {FileDialogPurpose::photographs, "Photographs", "A capture's folder, or its camera file.", "Use", "", ".json .npy"},
 };
 
 }  // namespace

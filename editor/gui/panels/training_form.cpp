@@ -42,15 +42,25 @@ void draw_curve(const std::vector<std::array<double, 3>>& rows) {
 
 }  // namespace
 
-// Takes the answer of the file dialog, and suggests an output folder.
+// Sets the output folder, unless the user has typed one, to a new folder beside the photographs.
+void TrainingForm::suggest(const fs::path& photographs) {
+  if (inputs_.values().value("out", suggested_) != suggested_) return;
+  std::error_code gone;
+  suggested_ = photographs.string() + "-trained";
+  for (int number = 2; fs::exists(suggested_, gone); ++number)
+    suggested_ = fmt::format("{}-trained-{}", photographs.string(), number);
+  inputs_.set("out", suggested_);
+}
+
+// Takes the answer of the file dialog, and suggests a new output folder for it and after a training.
 void TrainingForm::take_photographs(EditorContext& editor) {
   const std::string chosen = std::exchange(editor.dialogs.photographs, {});
-  if (chosen.empty()) return;
-  inputs_.set("photographs", chosen);
-  const fs::path path(chosen);
+  if (!chosen.empty()) inputs_.set("photographs", chosen);
+  const bool runs = editor.training.state() != TrainingJob::State::none, ended = std::exchange(ran_, runs) && !runs;
+  if (chosen.empty() && !ended) return;
+  const fs::path path(inputs_.values().value("photographs", ""));
   std::error_code gone;
-  const fs::path folder = fs::is_directory(path, gone) ? path : path.parent_path();
-  if (!inputs_.values().contains("out")) inputs_.set("out", folder.string() + "-trained");
+  if (!path.empty()) suggest(fs::is_directory(path, gone) ? path : path.parent_path());
 }
 
 void TrainingForm::draw_fields(EditorContext& editor) {
@@ -66,16 +76,30 @@ void TrainingForm::draw_fields(EditorContext& editor) {
     return problem_.find("\"" + field.name + "\"") != std::string::npos;
   });
   if (!problem_.empty() && !said) ui::wrapped(problem_, theme().danger);
-  if (ui::primary_button("Train##train")) {
-    try {
-      editor.training.start(read_action<TrainAction>(inputs_.values(), editor.scene()));
-      problem_.clear();
-    } catch (const Error& error) {
-      problem_ = error.what();
-    }
+  const std::string out = inputs_.values().value("out", "");
+  std::error_code gone;
+  const bool replaces = fs::is_directory(out, gone) && !fs::is_empty(out, gone), asks = replaces && replacing_ == out;
+  if (asks)
+    ui::wrapped(out + " already exists. Press the button again to replace it when the training is done.",
+                theme().danger);
+  if (ui::primary_button(asks ? "Replace##train" : "Train##train")) {
+    if (replaces && !asks)
+      replacing_ = out;
+    else
+      start(editor);
   }
   ImGui::SameLine();
   if (ui::button("Close##close")) editor.dialogs.training = false;
+}
+
+void TrainingForm::start(EditorContext& editor) {
+  replacing_.clear();
+  problem_.clear();
+  try {
+    editor.training.start(read_action<TrainAction>(inputs_.values(), editor.scene()));
+  } catch (const Error& error) {
+    problem_ = error.what();
+  }
 }
 
 void TrainingForm::draw_progress(EditorContext& editor) {
@@ -90,22 +114,23 @@ void TrainingForm::draw_progress(EditorContext& editor) {
   announce::item("progress: " + what);
   draw_curve(job.progress_rows());
   if (paused) {
-    if (ui::primary_button("Continue##continue")) job.go_on();
+    if (ui::primary_button("Continue##continue")) job.resume();
   } else {
     ImGui::BeginDisabled(job.state() == State::pausing);
     if (ui::button("Pause##pause")) job.pause();
-    ui::tip("Pause", "", "Writes a checkpoint and stops. Continue goes on from there, also after a restart.");
+    ui::tip("Pause", "",
+            "Writes a checkpoint and stops. Training to the same folder continues from there, also after a restart.");
     ImGui::EndDisabled();
   }
   ImGui::SameLine();
-  ImGui::BeginDisabled(job.state() == State::keeping || job.state() == State::pausing);
+  ImGui::BeginDisabled(job.state() == State::keeping || job.state() == State::pausing || !job.node());
   if (ui::button("Stop and keep##keep")) job.keep();
-  ui::tip("Stop and keep", "", "Writes the scene as it is now and opens it.");
+  ui::tip("Stop and keep", "", "Writes the scene as it is now and opens it. Available once there is something to see.");
   ImGui::EndDisabled();
   if (!paused) return;
   ImGui::SameLine();
   if (ui::button("Close##close")) job.close();
-  ui::tip("Close", "", "Removes the scene from view. The checkpoint stays: the same training goes on from there.");
+  ui::tip("Close", "", "Removes the scene from view. The checkpoint stays: the same training continues from there.");
 }
 
 void TrainingForm::draw(EditorContext& editor, float right) {

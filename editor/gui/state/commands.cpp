@@ -36,6 +36,7 @@ namespace {
 
 bool always(const EditorContext&) { return true; }
 bool has_scene(const EditorContext& editor) { return !editor.scene().roots.empty(); }
+bool has_something_to_see(const EditorContext& editor) { return has_scene(editor) || editor.beside; }
 bool has_steps(const EditorContext& editor) { return has_scene(editor) || !editor.now->done.empty(); }
 bool has_views(const EditorContext& editor) { return editor.scene().views.size() > 1; }
 bool has_active(const EditorContext& editor) { return !editor.active.empty(); }
@@ -359,7 +360,7 @@ const std::vector<Command>& command_table() {
       {"Tool", "Larger brush", "]", "]", "", always, [](EditorContext& editor) { brush_by(editor, 1.25); }, nullptr,
        true},
       {"View", "Frame selection", "F", "KP_DECIMAL Home",
-       "Frames the selection, else the picked nodes, else the whole scene.", has_scene,
+       "Frames the selection, else the picked nodes, else the whole scene.", has_something_to_see,
        [](EditorContext& editor) { editor.frame_view(); }},
       {"View", "Front", "KP_1", "KP_1", "", always, look_along<2, 1>},
       {"View", "Back", "Ctrl+KP_1", "Ctrl+KP_1", "", always, look_along<2, -1>},

@@ -22,6 +22,7 @@ constexpr std::chrono::milliseconds between_frames{500};
 }  // namespace
 
 TrainingJob::~TrainingJob() {
+  closes_ = true;
   cancel_ = true;
   if (thread_.joinable()) thread_.join();
 }
@@ -32,16 +33,19 @@ void TrainingJob::start(const TrainAction& action) {
   check_can_export(action.out, worker_.snapshot()->sources);
   action_ = action;
   action_.out = absolute_path(action.out).string();
-  look_ = {};
+  preview_ = {};
   node_.reset();
-  go_on();
+  begin();
 }
 
-void TrainingJob::go_on() {
-  if (thread_.joinable()) thread_.join();
+void TrainingJob::resume() {
+  if (state_ == State::paused) begin();
+}
+
+void TrainingJob::begin() {
   cancel_ = enough_ = false;
   end_ = End::none;
-  status_ = {"training", "", 0};
+  status_ = {};
   state_ = State::running;
   thread_ = std::thread([this] { run(); });
 }
@@ -53,7 +57,8 @@ void TrainingJob::pause() {
 }
 
 void TrainingJob::keep() {
-  if (state_ == State::paused) go_on();
+  if (!node_) return;
+  resume();
   if (state_ != State::running) return;
   state_ = State::keeping;
   enough_ = true;
@@ -62,7 +67,7 @@ void TrainingJob::keep() {
 void TrainingJob::close() {
   if (state_ != State::paused) return;
   state_ = State::none;
-  look_ = {};
+  preview_ = {};
   node_.reset();
 }
 
@@ -97,10 +102,18 @@ void TrainingJob::run() {
     TrainingObserver observer;
     observer.enough = [this] { return enough_.load(); };
     observer.more_sources = [this] { return worker_.snapshot()->sources; };
-    observer.look = [this](const TrainingLook& look) {
+    observer.goes_on_unsaved = [this](const std::string& why) {
+      // When the window closes, nobody could free space.
+      if (closes_) return false;
+      cancel_ = enough_ = false;
+      const std::lock_guard lock(mutex_);
+      unsaved_ = why;
+      return true;
+    };
+    observer.preview = [this](const TrainingPreview& preview) {
       {
         const std::lock_guard lock(mutex_);
-        new_look_ = look;
+        new_preview_ = preview;
       }
       wake_();
     };
@@ -123,40 +136,49 @@ void TrainingJob::run() {
 }
 
 std::optional<std::string> TrainingJob::update(Messages& messages) {
-  if (state_ == State::none || state_ == State::paused) return {};
+  if (!runs()) return {};
   End end{};
-  std::optional<TrainingLook> look;
+  std::optional<TrainingPreview> preview;
+  std::string unsaved;
   {
     const std::lock_guard lock(mutex_);
     end = end_;
-    look = std::exchange(new_look_, std::nullopt);
+    preview = std::exchange(new_preview_, std::nullopt);
+    unsaved = std::exchange(unsaved_, {});
     for (const std::string& line : std::exchange(messages_, {})) messages.note("Training: " + line);
   }
-  if (look) {
-    look_ = std::move(*look);
-    if (look_.object) {
-      auto node = std::make_shared<Node>();
-      node->id = id_beside;
-      node->name = "training";
-      node->object = look_.object;
-      node_ = std::move(node);
-    }
+  if (preview) take(std::move(*preview));
+  if (!unsaved.empty()) {
+    state_ = State::running;
+    messages.fail("The training runs on, because its checkpoint could not be written: " + unsaved +
+                  ". Free some space, then pause or keep it again.");
   }
   if (end == End::none) return {};
   thread_.join();
   if (end == End::done) {
     state_ = State::none;
+    preview_ = {};
     node_.reset();
     return action_.out;
   }
   state_ = State::paused;
-  if (end == End::failed) {
+  if (end == End::cancelled)
+    messages.say("The training is paused.");
+  else
     messages.fail("Training: " + problem_);
-    if (!node_) state_ = State::none;
-  } else {
-    messages.say("The training is paused; its checkpoint is in " + action_.out + ".training.");
-  }
+  // Without a scene there is nothing to continue.
+  if (end == End::failed && !node_) state_ = State::none;
   return {};
+}
+
+void TrainingJob::take(TrainingPreview&& preview) {
+  preview_ = std::move(preview);
+  if (!preview_.object) return;
+  auto node = std::make_shared<Node>();
+  node->id = id_beside;
+  node->name = "training";
+  node->object = preview_.object;
+  node_ = std::move(node);
 }
 
 }  // namespace rebake

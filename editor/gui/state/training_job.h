@@ -32,12 +32,13 @@ class TrainingJob {
 
   /// Starts a training, if none is running. Throws Error if its output folder may not be written.
   void start(const TrainAction& action);
-  /// Stops at a checkpoint, from which go_on() continues.
+  /// Stops at a checkpoint. If none can be written, the training runs on.
   void pause();
-  void go_on();
-  /// Leaves out the rest of the steps and writes the scene as it is.
+  /// Continues a paused training from its checkpoint.
+  void resume();
+  /// Leaves out the rest of the steps and writes the scene as it is. Only if there is a node().
   void keep();
-  /// Forgets a paused training. Its checkpoint stays: the same training goes on from there.
+  /// Forgets a paused training. Its checkpoint stays: the same training continues from there.
   void close();
 
   State state() const { return state_; }
@@ -47,22 +48,24 @@ class TrainingJob {
   /// Current task and its completed share, 0 … 1.
   Worker::Status status() const;
   /// Steps, seconds and PSNR of the training pixels in dB, in the order of the steps.
-  const std::vector<std::array<double, 3>>& progress_rows() const { return look_.rows; }
+  const std::vector<std::array<double, 3>>& progress_rows() const { return preview_.rows; }
   /// The scene so far, as a node that is not part of a document; null: nothing to see yet.
   const NodePtr& node() const { return node_; }
-  const std::vector<PhotoCamera>& cameras() const { return look_.cameras; }
+  const std::vector<PhotoCamera>& cameras() const { return preview_.cameras; }
 
-  /// Fetches the news of the thread, and says its messages. Returns the folder of the scene when the training is done.
+  /// Takes preview and messages from the thread. Returns the folder of the scene when the training is done.
   std::optional<std::string> update(Messages& messages);
 
  private:
   void run();
+  void begin();
+  void take(TrainingPreview&& preview);
 
   const Worker& worker_;
   std::function<void()> wake_;
   State state_ = State::none;
   TrainAction action_;
-  TrainingLook look_;
+  TrainingPreview preview_;
   NodePtr node_;
 
   /// How the thread has ended.
@@ -70,10 +73,11 @@ class TrainingJob {
   mutable std::mutex mutex_;
   Worker::Status status_;  // the following members belong to the mutex
   std::vector<std::string> messages_;
-  std::optional<TrainingLook> new_look_;
+  std::optional<TrainingPreview> new_preview_;
   End end_ = End::none;
   std::string problem_;
-  std::atomic<bool> cancel_ = false, enough_ = false;
+  std::string unsaved_;  // why a checkpoint could not be written when the training was to stop; empty: none
+  std::atomic<bool> cancel_ = false, enough_ = false, closes_ = false;
   std::thread thread_;
 };
 

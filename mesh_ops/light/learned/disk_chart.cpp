@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "mesh_ops/base/error.h"
 
@@ -33,11 +35,55 @@ bool folds(const DiskChart& chart) {
                       [&](const Face& face) { return area_of(chart, face) > 0; });
 }
 
+using Halfedge = Mesh::Halfedge_index;
+using Vertex = Mesh::Vertex_index;
+
+double distance(const Mesh& mesh, Vertex a, Vertex b) {
+  return std::sqrt(CGAL::squared_distance(mesh.point(a), mesh.point(b)));
+}
+
+// Four vertices of the border for the corners of the square: the one with the sharpest angle, and those nearest to a
+// quarter, half and three quarters of the border's length from it.
+std::array<Vertex, 4> sharp_corners(const Mesh& mesh, Halfedge border) {
+  std::vector<Vertex> loop;
+  std::vector<double> from_start{0};
+  for (const Halfedge h : CGAL::halfedges_around_face(border, mesh)) {
+    loop.push_back(mesh.target(h));
+    if (loop.size() > 1) from_start.push_back(from_start.back() + distance(mesh, loop.back(), loop[loop.size() - 2]));
+  }
+  const std::size_t count = loop.size();
+  const double length = from_start.back() + distance(mesh, loop.back(), loop[0]);
+  std::size_t sharpest = 0;
+  double least = 2;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto before = mesh.point(loop[(k + count - 1) % count]) - mesh.point(loop[k]),
+               after = mesh.point(loop[(k + 1) % count]) - mesh.point(loop[k]);
+    const double straightness = -(before * after) / std::sqrt(before.squared_length() * after.squared_length());
+    if (straightness < least) {
+      least = straightness;
+      sharpest = k;
+    }
+  }
+  std::array<Vertex, 4> corners{loop[sharpest]};
+  for (std::size_t k = 1; k < 4; ++k) {
+    const double wanted = std::fmod(from_start[sharpest] + static_cast<double>(k) * length / 4, length);
+    const auto off = [&](std::size_t at) {
+      const double d = std::abs(from_start[at] - wanted);
+      return std::min(d, length - d);
+    };
+    std::size_t best = 0;
+    for (std::size_t v = 1; v < count; ++v)
+      if (off(v) < off(best)) best = v;
+    corners[k] = loop[best];
+  }
+  return corners;
+}
+
 template <class Parameterizer>
-void lay_out(Mesh& mesh, DiskChart& chart) {
-  const auto border = CGAL::Polygon_mesh_processing::longest_border(mesh).first;
-  auto uvs = mesh.add_property_map<Mesh::Vertex_index, Kernel::Point_2>("v:uv").first;
-  const layout::Error_code code = layout::parameterize(mesh, Parameterizer(), border, uvs);
+void lay_out(Mesh& mesh, DiskChart& chart, const Parameterizer& parameterizer) {
+  const Halfedge border = CGAL::Polygon_mesh_processing::longest_border(mesh).first;
+  auto uvs = mesh.add_property_map<Vertex, Kernel::Point_2>("v:uv").first;
+  const layout::Error_code code = layout::parameterize(mesh, parameterizer, border, uvs);
   if (code != layout::OK)
     throw Error(fmt::format("the mesh cannot be parametrised over a square: {}", layout::get_error_message(code)));
   for (const auto v : mesh.vertices()) chart.uvs[v] = {uvs[v].x(), uvs[v].y()};
@@ -47,6 +93,9 @@ void lay_out(Mesh& mesh, DiskChart& chart) {
   if (area < 0)
     for (Vec2& uv : chart.uvs) uv.x() = 1 - uv.x();
 }
+
+using Harmonic = layout::Discrete_conformal_map_parameterizer_3<Mesh, Border>;
+using MeanValue = layout::Mean_value_coordinates_parameterizer_3<Mesh, Border>;
 
 }  // namespace
 
@@ -62,8 +111,15 @@ DiskChart disk_chart(const ProxyMesh& mesh, int tips) {
         Mesh::null_face())
       throw Error("the mesh is not manifold: two fans of triangles share one vertex");
   chart.uvs.resize(chart.source.size());
-  lay_out<layout::Discrete_conformal_map_parameterizer_3<Mesh, Border>>(disk, chart);
-  if (folds(chart)) lay_out<layout::Mean_value_coordinates_parameterizer_3<Mesh, Border>>(disk, chart);
+  lay_out(disk, chart, Harmonic());
+  if (!folds(chart)) return chart;
+  // A triangle with all corners on one side of the square has no area there: corners of the border belong on corners.
+  const auto [a, b, c, d] = sharp_corners(disk, CGAL::Polygon_mesh_processing::longest_border(disk).first);
+  lay_out(disk, chart, Harmonic(Border(a, b, c, d)));
+  if (!folds(chart)) return chart;
+  chart.mean_value = true;
+  lay_out(disk, chart, MeanValue());
+  if (folds(chart)) lay_out(disk, chart, MeanValue(Border(a, b, c, d)));
   return chart;
 }
 

@@ -14,6 +14,7 @@ struct DiskChart {
   std::vector<std::uint32_t> source;  ///< per disk vertex: the mesh vertex that it copies
   std::vector<Vec2> uvs;              ///< per disk vertex, 0 … 1; the boundary of the disk is that of the square
   std::vector<Face> faces;            ///< indices of disk vertices, in the order of the mesh's faces
+  bool mean_value = false;            ///< laid out by mean value weights, because harmonic ones would fold
 };
 
 /// A geometry image (Gu, Gortler and Hoppe 2002): each texel is a point of the surface. The outermost texel centres lie

@@ -179,11 +179,11 @@ UnetTransfer::State read_net_head(const nlohmann::json& head, std::size_t file_s
   const std::uint64_t vertices = about.at("vertices"), faces = about.at("faces");
   require_room(file_size, static_cast<double>(vertices), 2 * sizeof(double));
   require_room(file_size, static_cast<double>(faces), sizeof(Face));
-  require_room(file_size, static_cast<double>(unet_weight_count(net.channels)), sizeof(float));
+  require_room(file_size, static_cast<double>(unet_weight_count(UnetForm::added, net.channels)), sizeof(float));
   net.chart.source.resize(vertices);
   net.chart.uvs.resize(vertices);
   net.chart.faces.resize(faces);
-  net.weights.resize(unet_weight_count(net.channels));
+  net.weights.resize(unet_weight_count(UnetForm::added, net.channels));
   net.mean.resize(model.learned.mean.size());
   return net;
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
+#include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/processor.h"
 #include "mesh_ops/light/learned/convolution.h"
 
@@ -46,14 +48,16 @@ Planes convolved(const Planes& in, const UnetLayer& layer, const std::vector<flo
   Planes out(layer.outputs, in.side / layer.stride);
   const Convolution convolution{layer.inputs, layer.outputs, layer.kernel, weights.data(), bias.data()};
   const int blocks = layer.outputs / convolution_lanes;
+  // Rows narrower than a vector are computed with their zero border.
+  const int width = (in.side + convolution_lanes - 1) / convolution_lanes * convolution_lanes;
   tbb::parallel_for(0, out.side * blocks, [&](int task) {
     const int y = task / blocks, block = task % blocks;
-    std::vector<float> sums(static_cast<std::size_t>(in.side * convolution_lanes));
-    convolve_row()(convolution, in.row(0, 0), in.layout, in.side, y * layer.stride, block, sums.data());
+    std::vector<float> sums(static_cast<std::size_t>(width * convolution_lanes));
+    convolve_row()(convolution, in.row(0, 0), in.layout, width, y * layer.stride, block, sums.data());
     for (int o = 0; o < convolution_lanes; ++o) {
       const int plane = block * convolution_lanes + o;
       float* to = out.row(plane, y);
-      const float *from = sums.data() + o * in.side, *more = added != nullptr ? added->row(plane, y) : nullptr;
+      const float *from = sums.data() + o * width, *more = added != nullptr ? added->row(plane, y) : nullptr;
       for (int x = 0; x < out.side; ++x) {
         float value = from[x * layer.stride] + (more != nullptr ? more[x] : 0.0F);
         if (after == After::ramp) value = std::max(0.0F, value);
@@ -75,15 +79,25 @@ Planes doubled(const Planes& in) {
   return out;
 }
 
+// The planes of both images.
+Planes together(const Planes& a, const Planes& b) {
+  Planes out(a.count + b.count, a.side);
+  std::copy_n(a.values.begin(), static_cast<std::size_t>(a.count) * a.layout.plane, out.values.begin());
+  std::copy_n(b.values.begin(), static_cast<std::size_t>(b.count) * b.layout.plane,
+              out.values.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(a.count) * a.layout.plane));
+  return out;
+}
+
 }  // namespace
 
-Unet::Unet(int side, int channels, std::vector<float> weights)
-    : side_(side), channels_(channels), weights_(std::move(weights)) {
-  if (side < 64 || side % 64 != 0) throw std::invalid_argument("the side must be a positive multiple of 64");
-  if (weights_.size() != unet_weight_count(channels))
+Unet::Unet(UnetForm form, int side, int channels, std::vector<float> weights)
+    : form_(form), side_(side), channels_(channels), weights_(std::move(weights)) {
+  if (const int step = unet_side_step(form); side < step || side % step != 0)
+    throw std::invalid_argument("the side must be a positive multiple of " + std::to_string(step));
+  if (weights_.size() != unet_weight_count(form, channels))
     throw std::invalid_argument("the number of weights does not match the number of channels");
   const float* next = weights_.data();
-  for (const UnetLayer& layer : unet_layers(channels)) {
+  for (const UnetLayer& layer : unet_layers(form, channels)) {
     Packed packed{layer, {}, {}};
     const auto taps = static_cast<std::size_t>(layer.inputs * layer.kernel * layer.kernel);
     packed.weights.resize(taps * static_cast<std::size_t>(layer.outputs));
@@ -118,19 +132,24 @@ std::vector<float> Unet::run(std::span<const float> image) const {
   };
   x = apply(x, After::ramp);
   std::vector<Planes> skipped;
-  for (int l = 0; l < unet_levels; ++l) {
+  const int levels = unet_levels(form_);
+  for (int l = 0; l < levels; ++l) {
     skipped.push_back(residual(x));
     x = apply(skipped.back(), After::ramp);
   }
   x = residual(x);
-  for (int l = unet_levels - 1; l >= 0; --l) {
-    x = apply(doubled(x), After::ramp, &skipped[static_cast<std::size_t>(l)]);
+  for (int l = levels - 1; l >= 0; --l) {
+    const Planes& skip = skipped[static_cast<std::size_t>(l)];
+    x = form_ == UnetForm::concatenated ? apply(together(doubled(x), skip), After::ramp)
+                                        : apply(doubled(x), After::ramp, &skip);
     x = residual(x);
   }
   x = apply(x, After::nothing);
   std::vector<float> result;
   for (int plane = 0; plane < unet_outputs; ++plane)
     for (int y = 0; y < side_; ++y) result.insert(result.end(), x.row(plane, y), x.row(plane, y) + side_);
+  if (form_ == UnetForm::concatenated)
+    for (float& value : result) value = static_cast<float>(1 / (1 + elementary::exp(-static_cast<double>(value))));
   return result;
 }
 

@@ -39,24 +39,35 @@ void require_unet_training() {
 Unet train_unet(const UnetImages& images, const UnetTraining& training, const Progress& progress) {
   const auto texels = static_cast<std::size_t>(images.side) * static_cast<std::size_t>(images.side);
   if (images.images.size() != images.poses * unet_inputs * texels ||
-      images.targets.size() != images.poses * unet_outputs * texels || images.poses == 0)
+      images.targets.size() != images.poses * unet_outputs * texels || images.held_out >= images.poses)
     throw std::invalid_argument("the sizes of the training images do not match");
   require_unet_training();
   struct Watch {
     const Progress& progress;
+    const UnetTraining& training;
     std::exception_ptr thrown;
-  } watch{progress, nullptr};
-  const UnetTask task{images.side,
+  } watch{progress, training, nullptr};
+  const std::string checkpoint = training.checkpoint.string();
+  constexpr double checkpoint_seconds = 60, last_share = 0.01;
+  const UnetTask task{training.form,
+                      images.side,
                       training.channels,
-                      images.poses,
+                      images.poses - images.held_out,
+                      images.held_out,
                       images.images.data(),
                       images.targets.data(),
                       training.epochs,
                       training.batch,
+                      training.threads,
                       training.rate,
+                      last_share * training.rate,
                       training.seed,
+                      training.cuda,
+                      checkpoint.c_str(),
+                      checkpoint_seconds,
                       [](void* user, double done, double loss) {
                         auto& to = *static_cast<Watch*>(user);
+                        if (to.thrown) return false;
                         try {
                           to.progress.at(fmt::format("training, loss {:.4f}", loss), done);
                         } catch (...) {
@@ -66,13 +77,22 @@ Unet train_unet(const UnetImages& images, const UnetTraining& training, const Pr
                         }
                         return true;
                       },
+                      [](void* user, int epoch, double loss, double held_out_loss) {
+                        auto& to = *static_cast<Watch*>(user);
+                        if (!to.training.watch) return;
+                        try {
+                          to.training.watch(epoch, loss, held_out_loss);
+                        } catch (...) {
+                          to.thrown = std::current_exception();
+                        }
+                      },
                       &watch};
-  std::vector<float> weights(unet_weight_count(training.channels));
+  std::vector<float> weights(unet_weight_count(training.form, training.channels));
   std::array<char, 512> error{};
   const int result = reinterpret_cast<TrainUnet>(module().symbol)(&task, weights.data(), error.data(), error.size());
   if (watch.thrown) std::rethrow_exception(watch.thrown);
   if (result != 0) throw Error(fmt::format("training failed: {}", error.data()));
-  return {images.side, training.channels, std::move(weights)};
+  return {training.form, images.side, training.channels, std::move(weights)};
 }
 
 }  // namespace rebake

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <span>
+#include <filesystem>
+#include <functional>
+#include <limits>
 
 #include "mesh_ops/base/progress.h"
 #include "mesh_ops/light/learned/unet.h"
@@ -13,6 +15,7 @@ struct UnetImages {
   std::size_t poses = 0;
   std::vector<float> images;   ///< [pose][unet_inputs][row][column]: position and normal (see unet.h)
   std::vector<float> targets;  ///< expected outputs: [pose][unet_outputs][row][column] (see unet.h)
+  std::size_t held_out = 0;    ///< so many of the last poses are not trained on, but measured after each epoch
 };
 
 /// Training parameters. `channels`: those of the finest level, a multiple of 8; `batch`: poses per step.
@@ -20,6 +23,12 @@ struct UnetTraining {
   int channels = 16, epochs = 30, batch = 8;
   double rate = 2e-3;  ///< initial learning rate; decays along a cosine to a hundredth
   std::uint64_t seed = 1;
+  UnetForm form = UnetForm::added;
+  int threads = 1;                     ///< small images do not gain from more
+  bool cuda = false;                   ///< on the graphics card; Error if LibTorch finds none
+  std::filesystem::path checkpoint{};  ///< file to go on from and to write about every minute; empty: none
+  /// Called after each epoch, if set. L1 losses per output value; NaN without held-out poses.
+  std::function<void(int epoch, double loss, double held_out_loss)> watch{};
 };
 
 /// Whether the training module is available. It is built if LibTorch is installed (samples/install_packages).

@@ -105,7 +105,7 @@ UnetTransfer UnetTransfer::Training::learned(const UnetTraining& options, const 
 UnetTransfer::UnetTransfer(State state)
     : state_((check(state), std::move(state))),
       image_(state_.chart, state_.side),
-      net_(state_.side, state_.channels, state_.weights) {}
+      net_(UnetForm::added, state_.side, state_.channels, state_.weights) {}
 
 Eigen::VectorXf UnetTransfer::predict(const std::vector<LightSite>& sites) const {
   std::vector<float> planes;

@@ -102,6 +102,16 @@ TEST_F(SelectMasksTest, OutvotesWrongNoisyAndMissingMasks) {
   EXPECT_LT(selected_share("ball"), 0.03);
 }
 
+TEST_F(SelectMasksTest, AddsTheVotesOfAllLabels) {
+  // Each photograph gives the ball another label: none has half of the votes, but all together.
+  write_masks([](int photo, std::uint8_t label) { return static_cast<std::uint8_t>(label == 2 ? 10 + photo : 0); });
+  json wanted = edit();
+  for (int photo = 0; photo < photographs; ++photo) wanted["labels"].push_back(10 + photo);
+  act(document_, wanted.dump());
+  EXPECT_GT(selected_share("other"), 0.9);
+  EXPECT_EQ(selected_share("ball"), 0);
+}
+
 TEST_F(SelectMasksTest, StoresASelectionPerLabel) {
   write_masks([](int, std::uint8_t label) { return static_cast<std::uint8_t>(label * 10); });
   json line = edit();

@@ -224,15 +224,18 @@ TEST(DiskChart, RejectsInvalidMeshes) {
     EXPECT_THROW(disk_chart(bad), Error);
 }
 
-TEST(Unet, MatchesPlainConvolutions) {
+class UnetForms : public testing::TestWithParam<UnetForm> {};
+
+TEST_P(UnetForms, MatchPlainConvolutions) {
   // Compared with plain convolutions, with random weights.
+  const UnetForm form = GetParam();
   constexpr int channels = 8, width = 64;
   std::mt19937 random(2);
   std::normal_distribution<float> normal;
-  std::vector<float> weights(unet_weight_count(channels)), image(unet_inputs * width * width);
+  std::vector<float> weights(unet_weight_count(form, channels)), image(unet_inputs * width * width);
   for (float& w : weights) w = 0.1F * normal(random);
   for (float& v : image) v = normal(random);
-  const std::vector<float> found = Unet(width, channels, weights).run(image);
+  const std::vector<float> found = Unet(form, width, channels, weights).run(image);
 
   struct Planes {
     int count, side;
@@ -241,7 +244,7 @@ TEST(Unet, MatchesPlainConvolutions) {
       return y < 0 || x < 0 || y >= side || x >= side ? 0 : values[static_cast<std::size_t>((c * side + y) * side + x)];
     }
   };
-  const auto layers = unet_layers(channels);
+  const auto layers = unet_layers(form, channels);
   std::size_t next = 0;
   const float* w = weights.data();
   const auto convolved = [&](const Planes& in) {
@@ -274,29 +277,46 @@ TEST(Unet, MatchesPlainConvolutions) {
   Planes x{unet_inputs, width, {image.begin(), image.end()}};
   x = ramp(convolved(x));
   std::vector<Planes> skipped;
-  for (int l = 0; l < unet_levels; ++l) {
+  for (int l = 0; l < unet_levels(form); ++l) {
     skipped.push_back(residual(x));
     x = ramp(convolved(skipped.back()));
   }
   x = residual(x);
-  for (int l = unet_levels - 1; l >= 0; --l) {
+  for (int l = unet_levels(form) - 1; l >= 0; --l) {
     Planes wide{x.count, 2 * x.side, {}};
     for (int c = 0; c < x.count; ++c)
       for (int y = 0; y < wide.side; ++y)
         for (int column = 0; column < wide.side; ++column) wide.values.push_back(x.at(c, y / 2, column / 2));
-    x = residual(ramp(convolved(wide), &skipped[static_cast<std::size_t>(l)]));
+    const Planes& skip = skipped[static_cast<std::size_t>(l)];
+    if (form == UnetForm::concatenated) {
+      wide.count += skip.count;
+      wide.values.insert(wide.values.end(), skip.values.begin(), skip.values.end());
+      x = residual(ramp(convolved(wide)));
+    } else {
+      x = residual(ramp(convolved(wide), &skip));
+    }
   }
   x = convolved(x);
-  ASSERT_EQ(found.size(), x.values.size());
   double largest = 0, off = 0;
+  for (const double value : x.values) largest = std::max(largest, std::abs(value));
+  if (form == UnetForm::concatenated)
+    for (double& value : x.values) value = 1 / (1 + std::exp(-value));
+  ASSERT_EQ(found.size(), x.values.size());
   for (std::size_t k = 0; k < found.size(); ++k) {
-    largest = std::max(largest, std::abs(x.values[k]));
     off = std::max(off, std::abs(x.values[k] - static_cast<double>(found[k])));
   }
   EXPECT_LT(off, 1e-4 * largest);
-  EXPECT_THROW(Unet(60, channels, weights), std::invalid_argument);
-  EXPECT_THROW(Unet(width, 12, weights), std::invalid_argument);
-  EXPECT_THROW(Unet(width, 16, weights), std::invalid_argument);
+  EXPECT_THROW(Unet(form, 60, channels, weights), std::invalid_argument);
+  EXPECT_THROW(Unet(form, width, 12, weights), std::invalid_argument);
+  EXPECT_THROW(Unet(form, width, 16, weights), std::invalid_argument);
+}
+INSTANTIATE_TEST_SUITE_P(Form, UnetForms, testing::Values(UnetForm::added, UnetForm::concatenated));
+
+TEST(UnetLayers, HaveAsManyParametersAsPublished) {
+  // The paper's compression ratio of 40.022 is that of 450 poses of 256² texels with 16 coefficients.
+  const double published = 450.0 * 256 * 256 * 16 / 40.022;
+  const auto found = static_cast<double>(unet_parameter_count(UnetForm::concatenated, 32));
+  EXPECT_NEAR(found / published, 1, 1e-3) << found;
 }
 
 TEST(Unet, TrainsWithLibTorch) {

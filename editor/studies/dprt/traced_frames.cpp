@@ -1,0 +1,123 @@
+#include "editor/studies/dprt/traced_frames.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstring>
+#include <fstream>
+
+#include "editor/studies/posed_body.h"
+#include "mesh_ops/base/duration.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/light/learned/disk_chart.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A file of traced frames: the hash of what they were traced from, then one block of floats per frame. It is not
+// portable and may end within a block.
+class TraceCache {
+ public:
+  TraceCache(const fs::path& file, std::uint64_t hash, std::size_t block) : file_(file), block_(block) {
+    if (file_.empty()) return;
+    std::ifstream in(file_, std::ios::binary);
+    std::uint64_t known = 0;
+    if (in.read(reinterpret_cast<char*>(&known), sizeof known) && known == hash) {
+      std::vector<float> frame(block);
+      while (in.read(reinterpret_cast<char*>(frame.data()), bytes())) frames_.push_back(frame);
+      in.close();
+      fs::resize_file(file_, sizeof hash + frames_.size() * static_cast<std::size_t>(bytes()));
+    } else {
+      std::ofstream out(file_, std::ios::binary);
+      out.write(reinterpret_cast<const char*>(&hash), sizeof hash);
+    }
+    out_.open(file_, std::ios::binary | std::ios::app);
+    if (!out_) throw FileError(file_, "cannot be written");
+  }
+  const std::vector<std::vector<float>>& frames() const { return frames_; }
+  void add(const std::vector<float>& frame) {
+    if (file_.empty()) return;
+    out_.write(reinterpret_cast<const char*>(frame.data()), bytes());
+    if (!out_.flush()) throw FileError(file_, "cannot be written; is the disk full?");
+  }
+
+ private:
+  std::streamsize bytes() const { return static_cast<std::streamsize>(block_ * sizeof(float)); }
+  fs::path file_;
+  std::size_t block_;
+  std::vector<std::vector<float>> frames_;
+  std::ofstream out_;
+};
+
+std::uint64_t hash_of(const AnimatedObject& object, int side, int rays) {
+  std::string bytes = fmt::format("{} {} {}", side, rays, object.frames.size());
+  for (const std::vector<Vec3>& frame : object.frames)
+    bytes.append(reinterpret_cast<const char*>(frame.data()), frame.size() * sizeof(Vec3));
+  return content_hash(bytes);
+}
+
+}  // namespace
+
+std::vector<Vec3> texel_positions(const GeometryImage& image, const std::vector<Vec3>& vertices) {
+  std::vector<Vec3> result;
+  for (const GeometryImage::Texel& texel : image.texels()) {
+    Vec3 place = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k)
+      place += static_cast<double>(texel.weights[static_cast<Eigen::Index>(k)]) * vertices[texel.vertices[k]];
+    result.push_back(place);
+  }
+  return result;
+}
+
+FrameSites sites_of(const ProxyMesh& rest, const std::vector<Vec3>& frame) {
+  const ProxyMesh posed{frame, rest.faces};
+  FrameSites result{vertex_rotations(rest, posed), {}};
+  result.sites = vertex_sites(rest, posed, result.turns);
+  return result;
+}
+
+std::vector<float> traced_planes(const ProxyMesh& rest, const std::vector<Vec3>& frame, int rays) {
+  const Transfer traced = traced_pose(rest, {frame, rest.faces}, rays).transfer;
+  std::vector<float> planes(sh::count * frame.size());
+  for (std::size_t t = 0; t < frame.size(); ++t)
+    for (std::size_t c = 0; c < sh::count; ++c)
+      planes[c * frame.size() + t] = static_cast<float>(traced.sites[t][static_cast<Eigen::Index>(c)]);
+  return planes;
+}
+
+TracedFrames traced_frames(const AnimatedObject& object, int side, int rays, const fs::path& cache,
+                           const Progress& progress) {
+  TracedFrames result;
+  result.side = side;
+  const DiskChart chart = disk_chart(object.rest);
+  const GeometryImage image(chart, side);
+  result.mean_value = chart.mean_value;
+  result.undersampled = image.undersampled(object.rest);
+  result.rest = {texel_positions(image, object.rest.vertices), grid_chart(side).faces};
+  for (const std::vector<Vec3>& frame : object.frames) result.frames.push_back(texel_positions(image, frame));
+  TraceCache kept(cache, hash_of(object, side, rays), sh::count * image.texels().size());
+  result.transfer = kept.frames();
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t first = result.transfer.size();
+  constexpr int more_for_held_out = 4;
+  for (std::size_t k = first; k < result.frames.size(); ++k) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::size_t done = k - first;
+    progress.at(fmt::format("tracing frame {} of {}{}", k + 1, result.frames.size(),
+                            done > 10 ? about + duration_text(seconds / static_cast<double>(done) *
+                                                              static_cast<double>(result.frames.size() - k))
+                                      : ""),
+                static_cast<double>(k) / static_cast<double>(result.frames.size()));
+    result.transfer.push_back(
+        traced_planes(result.rest, result.frames[k], is_held_out(k) ? more_for_held_out * rays : rays));
+    kept.add(result.transfer.back());
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace rebake

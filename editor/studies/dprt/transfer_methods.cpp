@@ -1,0 +1,285 @@
+#include "editor/studies/dprt/transfer_methods.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <thread>
+
+#include "mesh_ops/base/duration.h"
+#include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
+#include "mesh_ops/light/learned/learned_transfer.h"
+#include "mesh_ops/light/learned/unet_trainer.h"
+#include "mesh_ops/light/learned/unet_transfer.h"
+
+namespace rebake {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Planes = std::vector<float>;
+
+double minutes_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 60;
+}
+
+std::vector<sh::Coefficients> unpacked(const Planes& planes) {
+  const std::size_t texels = planes.size() / sh::count;
+  std::vector<sh::Coefficients> result(texels);
+  for (std::size_t t = 0; t < texels; ++t)
+    for (std::size_t c = 0; c < sh::count; ++c)
+      result[t][static_cast<Eigen::Index>(c)] = static_cast<double>(planes[c * texels + t]);
+  return result;
+}
+
+// Planes of coefficients per texel ([texel][16]), rotated by `turns` if given.
+Planes packed(const Eigen::VectorXf& values, const std::vector<Mat3>* turns) {
+  const auto texels = static_cast<std::size_t>(values.size()) / sh::count;
+  Planes planes(static_cast<std::size_t>(values.size()));
+  tbb::parallel_for(std::size_t{0}, texels, [&](std::size_t t) {
+    sh::Coefficients one = values.segment<sh::count>(static_cast<Eigen::Index>(t * sh::count)).cast<double>();
+    if (turns != nullptr) one = sh::Rotation((*turns)[t]) * one;
+    for (std::size_t c = 0; c < sh::count; ++c)
+      planes[c * texels + t] = static_cast<float>(one[static_cast<Eigen::Index>(c)]);
+  });
+  return planes;
+}
+
+std::size_t texels_of(const TracedFrames& traced) { return traced.rest.vertices.size(); }
+
+std::vector<std::size_t> frames_in_order(const TracedFrames& traced) {
+  std::vector<std::size_t> order(traced.frames.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  std::stable_partition(order.begin(), order.end(), [](std::size_t k) { return !is_held_out(k); });
+  return order;
+}
+
+std::size_t held_out_count(const TracedFrames& traced) {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < traced.frames.size(); ++k) count += is_held_out(k) ? 1 : 0;
+  return count;
+}
+
+// The ranges of the training frames; coefficients with a margin on both sides, which the sigmoid reaches easily.
+DprtNetwork::Ranges ranges_of(const TracedFrames& traced) {
+  DprtNetwork::Ranges ranges;
+  Box box;
+  const std::size_t texels = texels_of(traced);
+  constexpr float margin = 0.05F;
+  ranges.low.fill(std::numeric_limits<float>::infinity());
+  ranges.high.fill(-std::numeric_limits<float>::infinity());
+  for (std::size_t k = 0; k < traced.frames.size(); ++k) {
+    if (is_held_out(k)) continue;
+    for (const Vec3& p : traced.frames[k]) box.extend(p);
+    for (std::size_t c = 0; c < sh::count; ++c) {
+      const auto first = traced.transfer[k].begin() + static_cast<std::ptrdiff_t>(c * texels);
+      const auto [low, high] = std::minmax_element(first, first + static_cast<std::ptrdiff_t>(texels));
+      ranges.low[c] = std::min(ranges.low[c], *low);
+      ranges.high[c] = std::max(ranges.high[c], *high);
+    }
+  }
+  for (std::size_t c = 0; c < sh::count; ++c) {
+    const float room = margin * (ranges.high[c] - ranges.low[c]);
+    ranges.low[c] -= room;
+    ranges.high[c] += room;
+  }
+  ranges.center = box.center();
+  ranges.reach = box.sizes().maxCoeff() / 2;
+  return ranges;
+}
+
+UnetImages images_of(const TracedFrames& traced, const DprtNetwork::Ranges& ranges, const Progress& progress) {
+  const std::vector<std::size_t> order = frames_in_order(traced);
+  const std::size_t texels = texels_of(traced);
+  UnetImages images;
+  images.side = traced.side;
+  images.poses = order.size();
+  images.held_out = held_out_count(traced);
+  images.images.resize(order.size() * unet_inputs * texels);
+  images.targets.resize(order.size() * unet_outputs * texels);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    progress.at("geometry images", static_cast<double>(i) / static_cast<double>(order.size()));
+    const Planes image = DprtNetwork::image_of(sites_of(traced.rest, traced.frames[order[i]]).sites, ranges);
+    std::copy(image.begin(), image.end(), images.images.begin() + static_cast<std::ptrdiff_t>(i * image.size()));
+    const Planes& transfer = traced.transfer[order[i]];
+    float* to = images.targets.data() + i * transfer.size();
+    for (std::size_t c = 0; c < sh::count; ++c) {
+      const float range = ranges.high[c] - ranges.low[c];
+      for (std::size_t t = 0; t < texels; ++t)
+        to[c * texels + t] = range > 0 ? (transfer[c * texels + t] - ranges.low[c]) / range : 0.5F;
+    }
+  }
+  return images;
+}
+
+constexpr const char* curve_head = "epoch,L1 loss,held-out L1 loss\n";
+
+// The rows of a curve that an interrupted training has written.
+DprtCurve read_curve(const fs::path& file) {
+  DprtCurve rows;
+  std::error_code gone;
+  if (!fs::exists(file, gone)) return rows;
+  const std::string text = read_file(file);
+  for (std::size_t at = text.find('\n') + 1; at != 0 && at < text.size(); at = text.find('\n', at) + 1) {
+    std::array<double, 3> row{};
+    if (std::sscanf(text.c_str() + at, "%lf,%lf,%lf", &row[0], &row[1], &row[2]) == 3) rows.push_back(row);
+  }
+  return rows;
+}
+
+void write_curve(const fs::path& file, const DprtCurve& rows) {
+  std::string text = curve_head;
+  for (const auto& [epoch, loss, held_out] : rows) text += fmt::format("{:.0f},{:.8f},{:.8f}\n", epoch, loss, held_out);
+  write_file_atomically(file, text, {});
+}
+
+int processor_threads() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+}  // namespace
+
+std::vector<DprtMethod> rest_methods(const TracedFrames& traced, int rays) {
+  const Planes rest = traced_planes(traced.rest, traced.rest.vertices, rays);
+  const auto coefficients = std::make_shared<const std::vector<sh::Coefficients>>(unpacked(rest));
+  DprtMethod unchanged, rotated;
+  unchanged.name = "unchanged";
+  unchanged.bytes = static_cast<double>(rest.size() * sizeof(float));
+  unchanged.predict = [rest](const FrameSites&, const std::vector<Vec3>&) { return rest; };
+  rotated.name = "rotated";
+  rotated.bytes = unchanged.bytes;
+  rotated.predict = [coefficients](const FrameSites& sites, const std::vector<Vec3>&) {
+    const std::size_t texels = coefficients->size();
+    Planes planes(sh::count * texels);
+    tbb::parallel_for(std::size_t{0}, texels, [&](std::size_t t) {
+      const sh::Coefficients one = sh::Rotation(sites.turns[t]) * (*coefficients)[t];
+      for (std::size_t c = 0; c < sh::count; ++c)
+        planes[c * texels + t] = static_cast<float>(one[static_cast<Eigen::Index>(c)]);
+    });
+    return planes;
+  };
+  return {unchanged, rotated};
+}
+
+std::vector<DprtMethod> linear_methods(const TracedFrames& traced, const Progress& progress) {
+  TransferTraining training(traced.rest.vertices, traced.frames.size() - held_out_count(traced),
+                            TransferTraining::Frames::both);
+  std::size_t pose = 0;
+  for (std::size_t k = 0; k < traced.frames.size(); ++k) {
+    if (is_held_out(k)) continue;
+    progress.at("poses of the linear models", static_cast<double>(k) / static_cast<double>(traced.frames.size()));
+    training.set(pose++, traced.frames[k], sites_of(traced.rest, traced.frames[k]).turns, unpacked(traced.transfer[k]));
+  }
+  std::vector<DprtMethod> methods;
+  for (const auto& [name, way] :
+       {std::pair{"linear (MoMoPRT)", TransferMethod::linear}, {"rotated + linear", TransferMethod::rotated_linear}}) {
+    progress.at(name, 0.5);
+    const auto start = std::chrono::steady_clock::now();
+    const auto model =
+        std::make_shared<const LearnedTransfer>(LearnedTransfer::learned(training, {.way = way}, progress));
+    DprtMethod method;
+    method.name = name;
+    method.minutes = minutes_since(start);
+    method.bytes = static_cast<double>(model->memory());
+    method.parameters = method.bytes / sizeof(float);
+    method.predict = [model, turns = way != TransferMethod::linear](const FrameSites& sites,
+                                                                    const std::vector<Vec3>& frame) {
+      return packed(model->predict(model->space.place(model->probes_in(frame))), turns ? &sites.turns : nullptr);
+    };
+    methods.push_back(std::move(method));
+  }
+  return methods;
+}
+
+DprtMethod published_network(const TracedFrames& traced, const DprtOptions& options, const std::string& base,
+                             DprtCurve& curve, const Progress& progress) {
+  const DprtNetwork::Ranges ranges = ranges_of(traced);
+  UnetTraining training;
+  training.form = UnetForm::concatenated;
+  training.channels = options.channels;
+  training.epochs = options.epochs;
+  training.batch = 5;
+  training.rate = 1e-3;
+  training.cuda = options.cuda;
+  training.threads = processor_threads();
+  training.checkpoint = base + ".checkpoint";
+  curve = read_curve(base + "-curve.csv");
+  const auto start = std::chrono::steady_clock::now();
+  std::optional<int> first;
+  double now = 0;
+  training.watch = [&](int epoch, double loss, double held_out) {
+    if (!first) first = epoch - 1;
+    std::erase_if(curve, [&](const auto& row) { return row[0] >= epoch; });
+    curve.push_back({static_cast<double>(epoch), loss, held_out});
+    write_curve(base + "-curve.csv", curve);
+    now = epoch;
+  };
+  // The module reports the share that is done; the time is estimated from that of this run.
+  double from = -1;
+  const Progress with_time([&](std::string_view what, double done) {
+    if (from < 0) from = done;
+    const double share = (done - from) / std::max(1e-9, 1 - from);
+    progress.at(
+        fmt::format("published network, {}{}{}", what,
+                    share > 0.002 ? about + duration_text(60 * minutes_since(start) * (1 - share) / share) : "",
+                    curve.empty() ? "" : fmt::format(", held out {:.5f} after epoch {:.0f}", curve.back()[2], now)),
+        done);
+  });
+  const auto net =
+      std::make_shared<const DprtNetwork>(train_unet(images_of(traced, ranges, progress), training, with_time), ranges);
+  const std::string bytes = net->bytes();
+  write_file_atomically(base + ".dprt", bytes, {});
+  DprtMethod method;
+  method.name = fmt::format("DPRT as published, {} channels, {} epochs", options.channels, options.epochs);
+  method.minutes = minutes_since(start);
+  method.bytes = static_cast<double>(bytes.size());
+  method.parameters = static_cast<double>(unet_parameter_count(UnetForm::concatenated, options.channels));
+  if (!curve.empty()) {
+    method.loss = curve.back()[1];
+    method.held_out_loss = curve.back()[2];
+  }
+  method.predict = [net](const FrameSites& sites, const std::vector<Vec3>&) { return net->predict(sites.sites); };
+  return method;
+}
+
+DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& options, const Progress& progress) {
+  UnetTransfer::Training training(traced.rest, GeometryImage(grid_chart(traced.side), traced.side));
+  for (std::size_t k = 0; k < traced.frames.size(); ++k) {
+    if (is_held_out(k)) continue;
+    progress.at("poses of Rebake's network", static_cast<double>(k) / static_cast<double>(traced.frames.size()));
+    const FrameSites there = sites_of(traced.rest, traced.frames[k]);
+    training.add(there.sites, there.turns, unpacked(traced.transfer[k]));
+  }
+  UnetTraining how;
+  how.channels = options.channels;
+  how.epochs = options.epochs;
+  how.cuda = options.cuda;
+  how.threads = processor_threads();
+  const auto start = std::chrono::steady_clock::now();
+  const auto net = std::make_shared<const UnetTransfer>(training.learned(how, progress));
+  DprtMethod method;
+  method.name = fmt::format("Rebake's network, {} channels, {} epochs", options.channels, options.epochs);
+  method.minutes = minutes_since(start);
+  const UnetTransfer::State& state = net->state();
+  method.parameters = static_cast<double>(unet_parameter_count(UnetForm::added, options.channels));
+  method.bytes =
+      static_cast<double>((state.weights.size() + static_cast<std::size_t>(state.mean.size())) * sizeof(float));
+  method.predict = [net](const FrameSites& sites, const std::vector<Vec3>&) {
+    return packed(net->predict(sites.sites), &sites.turns);
+  };
+  return method;
+}
+
+DprtMethod traced_method(const TracedFrames& traced, int rays) {
+  DprtMethod method;
+  method.name = fmt::format("traced, {} rays", rays);
+  method.predict = [rest = traced.rest, rays](const FrameSites&, const std::vector<Vec3>& frame) {
+    return traced_planes(rest, frame, rays);
+  };
+  return method;
+}
+
+}  // namespace rebake

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "editor/studies/dprt/traced_frames.h"
+#include "editor/studies/study.h"
+#include "mesh_ops/light/learned/dprt_network.h"
+
+namespace rebake {
+
+/// A method that predicts the radiance transfer of a pose of the texels.
+struct DprtMethod {
+  std::string name;
+  /// Coefficients [16][texel] in the body's space. `sites`: of the pose; `frame`: its positions.
+  std::function<std::vector<float>(const FrameSites& sites, const std::vector<Vec3>& frame)> predict;
+  double bytes = 0;                        ///< of what is stored, as a file or in memory; 0: nothing
+  double parameters = 0;                   ///< numbers that were learned
+  double minutes = 0;                      ///< of learning, without tracing
+  double loss = nan, held_out_loss = nan;  ///< L1 losses of the network's outputs
+  static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// Losses after each epoch: epoch, of the training frames, of the held-out frames.
+using DprtCurve = std::vector<std::array<double, 3>>;
+
+/// The transfer at rest, as it is and rotated with the surface.
+std::vector<DprtMethod> rest_methods(const TracedFrames& traced, int rays);
+/// Linear models in the body's space (MoMoPRT) and in rotated frames.
+std::vector<DprtMethod> linear_methods(const TracedFrames& traced, const Progress& progress);
+/// The published network. `base`: path of its checkpoint, curve and file, without their endings; they are kept.
+DprtMethod published_network(const TracedFrames& traced, const DprtOptions& options, const std::string& base,
+                             DprtCurve& curve, const Progress& progress);
+/// Rebake's own variant: added skip connections, deviations from the mean in rotated frames.
+DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& options, const Progress& progress);
+/// Tracing with this number of rays per texel.
+DprtMethod traced_method(const TracedFrames& traced, int rays);
+
+}  // namespace rebake
