@@ -46,12 +46,6 @@ CaptureFrame frame_of(const ReconstructionOptions& options, const Capture& captu
   return forward_frame(capture.training, options.near.value_or(0), options.far.value_or(0));
 }
 
-// Coarse below a minute and a half: logs get each text once.
-std::string remaining(double seconds) {
-  constexpr double step = 30;
-  return duration_text(seconds < 90 ? std::ceil(seconds / step) * step : seconds);
-}
-
 const char* name_of(TrainingStage stage) {
   return stage == TrainingStage::soft ? "stage 1" : stage == TrainingStage::binary ? "stage 2" : "stage 2, features";
 }
@@ -238,7 +232,7 @@ void TrainingRun::advance(Loop& loop, const Progress& progress) {
                                                     100 * reconstruction_->exposure_spread())
                                       : std::string("exposures agree: no gains"));
   const double work = work_of(done), more = work - loop.work_before, all = work_of(total);
-  const std::string rest = more > 10 ? about + remaining((all - work) * now / more) : std::string();
+  const std::string rest = more > 10 ? about + remaining_text((all - work) * now / more) : std::string();
   loop.text = fmt::format("training {}{}{}, step {} of {}", name_of(stage), rest,
                           loop.psnr > 0 ? fmt::format(", {:.1f} dB", loop.psnr) : "", done, total);
   loop.share = 0.95 * work / all;

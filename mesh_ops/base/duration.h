@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace rebake {
@@ -15,6 +16,12 @@ inline std::string duration_text(double seconds) {
   if (seconds < 90) return fmt::format("{:.0f} s", std::max(1.0, seconds));
   if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
   return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+/// As duration_text(), in steps of half a minute below a minute and a half, for progress: logs show each text once.
+inline std::string remaining_text(double seconds) {
+  constexpr double step = 30;
+  return duration_text(seconds < 90 ? std::ceil(seconds / step) * step : seconds);
 }
 
 }  // namespace rebake

@@ -145,7 +145,7 @@ CageText off_text(const std::filesystem::path& path, const std::string& bytes) {
 
 }  // namespace
 
-Cage read_cage(const std::filesystem::path& path) {
+Cage read_triangles(const std::filesystem::path& path) {
   const std::string format = format_of(path);
   const std::string bytes = read_file(path, std::uint64_t{1} << 30);
   check_counts(path, format, bytes);
@@ -161,7 +161,7 @@ Cage read_cage(const std::filesystem::path& path) {
   if (!read || mesh.n_faces() == 0) throw FileError(path, "contains no readable mesh");
   if (!complaints.text().empty())
     throw FileError(
-        path, "is non-manifold: each edge of a cage must belong to two triangles, and each point to one triangle fan");
+        path, "is non-manifold: each edge must belong to at most two triangles, and each point to one triangle fan");
   Cage cage;
   for (const auto v : mesh.vertices()) {
     const auto& p = mesh.point(v);
@@ -175,8 +175,14 @@ Cage read_cage(const std::filesystem::path& path) {
     for (const auto v : mesh.fv_range(f)) face[k++] = static_cast<std::uint32_t>(v.idx());
     cage.faces.push_back(face);
   }
+  return cage;
+}
+
+Cage read_cage(const std::filesystem::path& path) {
   try {
-    return checked_cage(std::move(cage));
+    return checked_cage(read_triangles(path));
+  } catch (const FileError&) {
+    throw;
   } catch (const Error& error) {
     throw FileError(path, error.what());
   }

@@ -6,9 +6,11 @@
 
 namespace rebake {
 
-/// Reads a closed triangle mesh (OBJ, OFF or PLY, at most 1 GiB) and checks it with checked_cage(). Materials
-/// and colours are ignored. Coordinates of PLY files are rounded to floats by OpenMesh. Throws FileError, naming the
-/// requirement of a cage that the mesh violates.
+/// Reads a manifold triangle mesh (OBJ, OFF or PLY, at most 1 GiB), which may be open. Materials and colours are
+/// ignored. Coordinates of PLY files are rounded to floats by OpenMesh. Throws FileError.
+Cage read_triangles(const std::filesystem::path& path);
+/// As read_triangles(), checked with checked_cage(). Throws FileError, naming the requirement of a cage that the mesh
+/// violates.
 Cage read_cage(const std::filesystem::path& path);
 
 }  // namespace rebake

@@ -20,7 +20,7 @@ AnimatedObject animated_files(const std::string& pattern) {
                 std::to_string(least) + " frames are needed, of which every tenth is held out");
   AnimatedObject object{fs::absolute(files.front()).parent_path().filename().string(), {}, {}};
   for (const fs::path& file : files) {
-    const Cage mesh = read_cage(file);
+    const Cage mesh = read_triangles(file);
     if (object.frames.empty())
       object.rest = {mesh.vertices, mesh.faces};
     else if (mesh.faces != object.rest.faces || mesh.vertices.size() != object.rest.vertices.size())

@@ -70,7 +70,7 @@ std::optional<DprtMethod> add_learned_methods(const StudyInput& input, const Dpr
   methods.push_back(published);
   methods.push_back(rotated_network(traced, options, input.progress));
   PlottedLine training{"training frames", {}}, held_out{"held-out frames", {}};
-  for (const auto& [epoch, loss, held_out_loss] : curve) {
+  for (const auto& [epoch, loss, held_out_loss, minutes] : curve) {
     training.points.push_back({epoch, loss});
     held_out.points.push_back({epoch, held_out_loss});
   }

@@ -107,9 +107,9 @@ TracedFrames traced_frames(const AnimatedObject& object, int side, int rays, con
   for (std::size_t k = first; k < result.frames.size(); ++k) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::size_t done = k - first;
-    progress.at(fmt::format("tracing frame {} of {}{}", k + 1, result.frames.size(),
-                            done > 10 ? about + duration_text(seconds / static_cast<double>(done) *
-                                                              static_cast<double>(result.frames.size() - k))
+    progress.at(fmt::format("tracing {} frames{}", result.frames.size(),
+                            done > 10 ? about + remaining_text(seconds / static_cast<double>(done) *
+                                                               static_cast<double>(result.frames.size() - k))
                                       : ""),
                 static_cast<double>(k) / static_cast<double>(result.frames.size()));
     result.transfer.push_back(

@@ -102,8 +102,8 @@ UnetImages images_of(const TracedFrames& traced, const DprtNetwork::Ranges& rang
   images.held_out = held_out_count(traced);
   images.images.resize(order.size() * unet_inputs * texels);
   images.targets.resize(order.size() * unet_outputs * texels);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    progress.at("geometry images", static_cast<double>(i) / static_cast<double>(order.size()));
+  progress.at("geometry images", 0);
+  tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
     const Planes image = DprtNetwork::image_of(sites_of(traced.rest, traced.frames[order[i]]).sites, ranges);
     std::copy(image.begin(), image.end(), images.images.begin() + static_cast<std::ptrdiff_t>(i * image.size()));
     const Planes& transfer = traced.transfer[order[i]];
@@ -113,11 +113,11 @@ UnetImages images_of(const TracedFrames& traced, const DprtNetwork::Ranges& rang
       for (std::size_t t = 0; t < texels; ++t)
         to[c * texels + t] = range > 0 ? (transfer[c * texels + t] - ranges.low[c]) / range : 0.5F;
     }
-  }
+  });
   return images;
 }
 
-constexpr const char* curve_head = "epoch,L1 loss,held-out L1 loss\n";
+constexpr const char* curve_head = "epoch,L1 loss,held-out L1 loss,minutes\n";
 
 // The rows of a curve that an interrupted training has written.
 DprtCurve read_curve(const fs::path& file) {
@@ -126,16 +126,29 @@ DprtCurve read_curve(const fs::path& file) {
   if (!fs::exists(file, gone)) return rows;
   const std::string text = read_file(file);
   for (std::size_t at = text.find('\n') + 1; at != 0 && at < text.size(); at = text.find('\n', at) + 1) {
-    std::array<double, 3> row{};
-    if (std::sscanf(text.c_str() + at, "%lf,%lf,%lf", &row[0], &row[1], &row[2]) == 3) rows.push_back(row);
+    std::array<double, 4> row{};
+    if (std::sscanf(text.c_str() + at, "%lf,%lf,%lf,%lf", &row[0], &row[1], &row[2], &row[3]) == 4) rows.push_back(row);
   }
   return rows;
 }
 
 void write_curve(const fs::path& file, const DprtCurve& rows) {
   std::string text = curve_head;
-  for (const auto& [epoch, loss, held_out] : rows) text += fmt::format("{:.0f},{:.8f},{:.8f}\n", epoch, loss, held_out);
+  for (const auto& [epoch, loss, held_out, minutes] : rows)
+    text += fmt::format("{:.0f},{:.8f},{:.8f},{:.3f}\n", epoch, loss, held_out, minutes);
   write_file_atomically(file, text, {});
+}
+
+// Progress with an estimated duration. The share of an interrupted training counts from where it goes on.
+Progress timed(const std::string& title, const Progress& progress, std::function<std::string()> more) {
+  return Progress([=, start = std::chrono::steady_clock::now(), from = -1.0](std::string_view, double done) mutable {
+    if (from < 0) from = done;
+    const double share = (done - from) / std::max(1e-9, 1 - from);
+    constexpr double known = 0.002;
+    progress.at(
+        title + (share > known ? about + remaining_text(60 * minutes_since(start) * (1 - share) / share) + more() : ""),
+        done);
+  });
 }
 
 int processor_threads() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
@@ -208,25 +221,16 @@ DprtMethod published_network(const TracedFrames& traced, const DprtOptions& opti
   training.checkpoint = base + ".checkpoint";
   curve = read_curve(base + "-curve.csv");
   const auto start = std::chrono::steady_clock::now();
-  std::optional<int> first;
-  double now = 0;
+  std::optional<double> before;  // minutes of interrupted runs
   training.watch = [&](int epoch, double loss, double held_out) {
-    if (!first) first = epoch - 1;
     std::erase_if(curve, [&](const auto& row) { return row[0] >= epoch; });
-    curve.push_back({static_cast<double>(epoch), loss, held_out});
+    if (!before) before = curve.empty() ? 0 : curve.back()[3];
+    curve.push_back({static_cast<double>(epoch), loss, held_out, *before + minutes_since(start)});
     write_curve(base + "-curve.csv", curve);
-    now = epoch;
   };
-  // The module reports the share that is done; the time is estimated from that of this run.
-  double from = -1;
-  const Progress with_time([&](std::string_view what, double done) {
-    if (from < 0) from = done;
-    const double share = (done - from) / std::max(1e-9, 1 - from);
-    progress.at(
-        fmt::format("published network, {}{}{}", what,
-                    share > 0.002 ? about + duration_text(60 * minutes_since(start) * (1 - share) / share) : "",
-                    curve.empty() ? "" : fmt::format(", held out {:.5f} after epoch {:.0f}", curve.back()[2], now)),
-        done);
+  const Progress with_time = timed("published network", progress, [&] {
+    return curve.empty() ? std::string()
+                         : fmt::format(", held out {:.5f} after epoch {:.0f}", curve.back()[2], curve.back()[0]);
   });
   const auto net =
       std::make_shared<const DprtNetwork>(train_unet(images_of(traced, ranges, progress), training, with_time), ranges);
@@ -234,12 +238,12 @@ DprtMethod published_network(const TracedFrames& traced, const DprtOptions& opti
   write_file_atomically(base + ".dprt", bytes, {});
   DprtMethod method;
   method.name = fmt::format("DPRT as published, {} channels, {} epochs", options.channels, options.epochs);
-  method.minutes = minutes_since(start);
   method.bytes = static_cast<double>(bytes.size());
   method.parameters = static_cast<double>(unet_parameter_count(UnetForm::concatenated, options.channels));
   if (!curve.empty()) {
     method.loss = curve.back()[1];
     method.held_out_loss = curve.back()[2];
+    method.minutes = curve.back()[3];
   }
   method.predict = [net](const FrameSites& sites, const std::vector<Vec3>&) { return net->predict(sites.sites); };
   return method;
@@ -259,7 +263,8 @@ DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& option
   how.cuda = options.cuda;
   how.threads = processor_threads();
   const auto start = std::chrono::steady_clock::now();
-  const auto net = std::make_shared<const UnetTransfer>(training.learned(how, progress));
+  const auto net = std::make_shared<const UnetTransfer>(
+      training.learned(how, timed("Rebake's network", progress, [] { return std::string(); })));
   DprtMethod method;
   method.name = fmt::format("Rebake's network, {} channels, {} epochs", options.channels, options.epochs);
   method.minutes = minutes_since(start);

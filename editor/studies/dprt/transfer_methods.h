@@ -24,8 +24,8 @@ struct DprtMethod {
   static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Losses after each epoch: epoch, of the training frames, of the held-out frames.
-using DprtCurve = std::vector<std::array<double, 3>>;
+/// Per epoch: its number, the losses of the training and the held-out frames, minutes of training since the start.
+using DprtCurve = std::vector<std::array<double, 4>>;
 
 /// The transfer at rest, as it is and rotated with the surface.
 std::vector<DprtMethod> rest_methods(const TracedFrames& traced, int rays);

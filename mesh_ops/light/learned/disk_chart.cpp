@@ -30,9 +30,16 @@ double area_of(const DiskChart& chart, const Face& face) {
   return (e.x() * f.y() - e.y() * f.x()) / 2;
 }
 
+// Whether a face has no area or is flipped. Faces with all corners on one side of the square have none, however they
+// are laid out.
 bool folds(const DiskChart& chart) {
-  return !std::all_of(chart.faces.begin(), chart.faces.end(),
-                      [&](const Face& face) { return area_of(chart, face) > 0; });
+  return !std::all_of(chart.faces.begin(), chart.faces.end(), [&](const Face& face) {
+    const Vec2 &a = chart.uvs[face[0]], &b = chart.uvs[face[1]], &c = chart.uvs[face[2]];
+    for (Eigen::Index axis = 0; axis < 2; ++axis)
+      for (const double side : {0.0, 1.0})
+        if (a[axis] == side && b[axis] == side && c[axis] == side) return true;
+    return area_of(chart, face) > 0;
+  });
 }
 
 using Halfedge = Mesh::Halfedge_index;
@@ -111,15 +118,14 @@ DiskChart disk_chart(const ProxyMesh& mesh, int tips) {
         Mesh::null_face())
       throw Error("the mesh is not manifold: two fans of triangles share one vertex");
   chart.uvs.resize(chart.source.size());
-  lay_out(disk, chart, Harmonic());
-  if (!folds(chart)) return chart;
-  // A triangle with all corners on one side of the square has no area there: corners of the border belong on corners.
-  const auto [a, b, c, d] = sharp_corners(disk, CGAL::Polygon_mesh_processing::longest_border(disk).first);
-  lay_out(disk, chart, Harmonic(Border(a, b, c, d)));
-  if (!folds(chart)) return chart;
-  chart.mean_value = true;
-  lay_out(disk, chart, MeanValue());
-  if (folds(chart)) lay_out(disk, chart, MeanValue(Border(a, b, c, d)));
+  const Halfedge border = CGAL::Polygon_mesh_processing::longest_border(disk).first;
+  // Corners of an open mesh belong on corners of the square; a cut has none.
+  const bool open = chart.source.size() == mesh.vertices.size();
+  const auto [a, b, c, d] = sharp_corners(disk, border);
+  const Border square = open ? Border(a, b, c, d) : Border();
+  lay_out(disk, chart, Harmonic(square));
+  chart.mean_value = folds(chart);
+  if (chart.mean_value) lay_out(disk, chart, MeanValue(square));
   return chart;
 }
 

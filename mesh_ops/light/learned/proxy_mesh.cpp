@@ -1,5 +1,7 @@
 #include "mesh_ops/light/learned/proxy_mesh.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/LU>
 #include <cmath>
 
@@ -48,7 +50,9 @@ std::vector<Mat3> vertex_rotations(const ProxyMesh& rest, const ProxyMesh& posed
     if (!motion.allFinite()) continue;
     for (const std::uint32_t v : face) sums[v] += area * motion;
   }
-  for (Mat3& sum : sums) sum = sum.isZero(0) ? Mat3(Mat3::Identity()) : local_rotation(sum).rotation;
+  tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t v) {
+    sums[v] = sums[v].isZero(0) ? Mat3(Mat3::Identity()) : local_rotation(sums[v]).rotation;
+  });
   return sums;
 }
 

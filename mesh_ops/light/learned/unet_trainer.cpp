@@ -48,7 +48,7 @@ Unet train_unet(const UnetImages& images, const UnetTraining& training, const Pr
     std::exception_ptr thrown;
   } watch{progress, training, nullptr};
   const std::string checkpoint = training.checkpoint.string();
-  constexpr double checkpoint_seconds = 60, last_share = 0.01;
+  constexpr double last_share = 0.01;
   const UnetTask task{training.form,
                       images.side,
                       training.channels,
@@ -64,7 +64,7 @@ Unet train_unet(const UnetImages& images, const UnetTraining& training, const Pr
                       training.seed,
                       training.cuda,
                       checkpoint.c_str(),
-                      checkpoint_seconds,
+                      training.checkpoint_seconds,
                       [](void* user, double done, double loss) {
                         auto& to = *static_cast<Watch*>(user);
                         if (to.thrown) return false;

@@ -26,7 +26,8 @@ struct UnetTraining {
   UnetForm form = UnetForm::added;
   int threads = 1;                     ///< small images do not gain from more
   bool cuda = false;                   ///< on the graphics card; Error if LibTorch finds none
-  std::filesystem::path checkpoint{};  ///< file to go on from and to write about every minute; empty: none
+  std::filesystem::path checkpoint{};  ///< file to go on from and to write after epochs; empty: none
+  double checkpoint_seconds = 60;      ///< at least this long between two checkpoints
   /// Called after each epoch, if set. L1 losses per output value; NaN without held-out poses.
   std::function<void(int epoch, double loss, double held_out_loss)> watch{};
 };

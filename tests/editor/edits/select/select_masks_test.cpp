@@ -107,7 +107,7 @@ TEST_F(SelectMasksTest, AddsTheVotesOfAllLabels) {
   write_masks([](int photo, std::uint8_t label) { return static_cast<std::uint8_t>(label == 2 ? 10 + photo : 0); });
   json wanted = edit();
   for (int photo = 0; photo < photographs; ++photo) wanted["labels"].push_back(10 + photo);
-  act(document_, wanted.dump());
+  act(document_, wanted);
   EXPECT_GT(selected_share("other"), 0.9);
   EXPECT_EQ(selected_share("ball"), 0);
 }

@@ -211,6 +211,13 @@ TEST(DiskChart, ParametrisesOpenClosedAndPuncturedSurfaces) {
   expect_disk(disk_chart(torus), torus);
 }
 
+TEST(DiskChart, LaysOutNeedles) {
+  // A sheet that is a thousand times as fine along one axis: long, thin triangles with obtuse angles.
+  ProxyMesh sheet = curved(0.4, 0.3);
+  for (Vec3& p : sheet.vertices) p.y() = 1e-3 * p.y() + 2e-3 * p.x() * p.x();
+  expect_disk(disk_chart(sheet), sheet);
+}
+
 TEST(DiskChart, RejectsInvalidMeshes) {
   ProxyMesh two = tetrahedron();
   for (const Vec3& p : tetrahedron().vertices) two.vertices.push_back(p + Vec3(5, 0, 0));
