@@ -42,7 +42,7 @@ void describe_study(SubcommandDescription& command) {
       .option("--channels", options->dprt.channels, "dprt: channels of the network's finest level; published: 32",
               "N [16]")
       .between(8, 128);
-  command.option("--epochs", options->dprt.epochs, "dprt: passes over the frames; published: 500 to 1000", "N [30]")
+  command.option("--epochs", options->dprt.epochs, "dprt: passes over the frames; published: 500 to 1000", "N [100]")
       .between(1, 100000);
   command.flag("--cuda", options->dprt.cuda, "dprt: train on the graphics card");
   command.flag("--paper", options->dprt.paper,

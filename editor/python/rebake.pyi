@@ -476,7 +476,7 @@ class Document:
         scale: factor of the cameras' positions
         node: only this node and its children; default: all visible, unlocked objects
         labels: values of pixels, or COCO categories, that are inside, 1 to 255; default: 128 to 255, or all categories
-        threshold: share of the votes that a triangle needs, 0 to 1
+        threshold: share of the votes that a triangle needs, above 0, at most 1
         store: with labels: stores the triangles of each as the selection "NAME LABEL"
         mode: how to combine the result with the present selection
         content: expected hash of the camera files, from projects and journals

@@ -137,9 +137,13 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
       table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
   // The plot is as high as its legend. Its output comes through a pipe, so that no output path reaches gnuplot.
   const std::size_t height = std::max<std::size_t>(440, 60 + 20 * table.rows.size());
+  // Longer names need a wider legend.
+  std::size_t longest = 0;
+  for (const StudyTable::Row& row : rows) longest = std::max(longest, row.choice.size());
+  const std::size_t width = 860 + 8 * (std::max<std::size_t>(longest, 28) - 28);
   for (const auto& [terminal, extension] :
-       {std::pair{fmt::format("svg size 860,{} dynamic background rgb 'white'", height), "svg"},
-        std::pair{fmt::format("pngcairo size 860,{}", height), "png"}})
+       {std::pair{fmt::format("svg size {},{} dynamic background rgb 'white'", width, height), "svg"},
+        std::pair{fmt::format("pngcairo size {},{}", width, height), "png"}})
     write_file_atomically(base + "." + extension,
                           run_gnuplot(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)), guard);
 }

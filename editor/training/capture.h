@@ -11,14 +11,14 @@ namespace rebake {
 /// Photographs for training, and others to judge the result by.
 struct Capture {
   PhotographSource source;
-  std::vector<PhotoCamera> cameras;  ///< of the training photographs
+  std::vector<PhotoCamera> cameras;  ///< cameras of the training photographs
   std::vector<FitPhotograph> training;
   std::vector<Photograph> held_out;
   std::vector<std::string> notes;  ///< assumptions and warnings, a sentence each
   std::uint64_t hash = 0;          ///< of all cameras and pixels
 };
 
-/// Which photographs are held out.
+/// The choice of held-out photographs.
 struct HeldOut {
   std::string
       file;       ///< camera file; empty: transforms_test.json beside transforms_train.json, else every n-th photograph

@@ -9,7 +9,7 @@ namespace rebake {
 
 // A checkpoint of a training: a line of JSON, then the state as bytes.
 
-/// Replaces the file atomically. `head`: what tells whether a training may go on from it. Throws FileError.
+/// Replaces the file atomically. `head`: data by which a training recognises its own checkpoint. Throws FileError.
 void write_checkpoint(const std::filesystem::path& file, const nlohmann::json& head, const std::string& state);
 
 /// Reads a checkpoint to `head`, and returns its state; nothing if there is no file. Throws FileError for a damaged

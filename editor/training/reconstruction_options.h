@@ -9,7 +9,7 @@
 
 namespace rebake {
 
-/// What people choose about a training.
+/// Options of a training.
 struct ReconstructionOptions {
   PhotographSource source;
   HeldOut held_out;
@@ -18,7 +18,7 @@ struct ReconstructionOptions {
   std::optional<int> steps;       ///< number of steps; nothing: by `minutes`
   std::optional<int> side;        ///< cells per side of the grid; nothing: by the size of the photographs
   std::optional<double> near;     ///< forward-facing captures: nearest depth; nothing: as the camera file states
-  std::optional<double> far;      ///< as `near`: farthest depth
+  std::optional<double> far;      ///< farthest depth; see `near`
   int seed = 1;
   bool mlp = false;                         ///< the published networks instead of hash grids
   int width = 64, octaves = 6, layers = 4;  ///< of these

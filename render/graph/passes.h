@@ -33,6 +33,7 @@ class ProgramCache {
 struct DecoderText {
   std::vector<std::shared_ptr<const Decoder>> decoders;
   RenderOptions::Precision precision = RenderOptions::Precision::full;
+  RenderOptions::Arithmetic arithmetic = RenderOptions::Arithmetic::scalars;
   std::string text;
 };
 

@@ -28,6 +28,11 @@ struct RenderOptions {
     full,  ///< decoder weights as 32-bit floats
     half,  ///< decoder weights rounded to 16-bit floats (11 significant bits)
   };
+  enum class Arithmetic {
+    scalars,      ///< constants: a sum of products per neuron, without those of zero weights
+    all_scalars,  ///< the same with zero weights
+    vectors       ///< constants: products of 4×4 matrices and vectors, without matrices of zeros
+  };
   enum class Occlusion {
     automatic,  ///< on if it is expected to pay, from the device and the last measured result
     on,         ///< two-pass occlusion culling
@@ -41,6 +46,7 @@ struct RenderOptions {
   Weights weights = Weights::automatic;
   Shading shading = Shading::automatic;
   Precision precision = Precision::full;
+  Arithmetic arithmetic = Arithmetic::scalars;
   Occlusion occlusion = Occlusion::automatic;
   Texels texels = Texels::automatic;
   bool transparent = false;  ///< the background is transparent: pictures get an alpha channel

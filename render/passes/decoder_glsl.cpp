@@ -23,12 +23,74 @@ void for_each_neuron(const Decoder& d,
   for (Eigen::Index j = 0; j < d.bias2.size(); ++j) neuron(2, j, d.bias2[j], d.weights2.col(j));
 }
 
+using Arithmetic = RenderOptions::Arithmetic;
+
+// Statements that compute c0, c1 and c2, the outputs before the logistic function: one per neuron.
+std::string scalar_layers(const Decoder& decoder, RenderOptions::Precision precision, bool zeros) {
+  static const char* const inputs[] = {"low.x",  "low.y",  "low.z", "low.w", "high.x", "high.y",
+                                       "high.z", "high.w", "ray.x", "ray.y", "ray.z"};
+  std::string out;
+  for_each_neuron(decoder, [&](int layer, Eigen::Index j, double bias, const Eigen::VectorXd& weights) {
+    out += fmt::format("  float {}{} = ", "abc"[layer], j);
+    std::string sum = fmt::format("{:.9e}", rounded(bias, precision));
+    for (Eigen::Index i = 0; i < weights.size(); ++i) {
+      const float w = rounded(weights[i], precision);
+      if (w == 0 && !zeros) continue;
+      sum += layer == 0 ? fmt::format(" + {:.9e} * {}", w, inputs[i])
+                        : fmt::format(" + {:.9e} * {}{}", w, "ab"[layer - 1], i);
+    }
+    out += layer < 2 ? fmt::format("max({}, 0.0);\n", sum) : sum + ";\n";
+  });
+  return out;
+}
+
+// A layer as products of 4×4 matrices and vectors: `in`0, `in`1, … to `to`0, `to`1, …
+std::string vector_layer(const Eigen::MatrixXd& weights, const Eigen::VectorXd& bias, const char* in, const char* to,
+                         RenderOptions::Precision precision) {
+  const Eigen::Index inputs = weights.rows(), outputs = weights.cols();
+  const auto value = [&](Eigen::Index i, Eigen::Index o) {
+    return i < inputs && o < outputs ? rounded(weights(i, o), precision) : 0.0F;
+  };
+  std::string out;
+  for (Eigen::Index o = 0; o < outputs; o += 4) {
+    std::string sum = "vec4(";
+    for (Eigen::Index k = 0; k < 4; ++k)
+      sum += fmt::format("{}{:.9e}", k > 0 ? ", " : "", o + k < outputs ? rounded(bias[o + k], precision) : 0.0F);
+    sum += ")";
+    for (Eigen::Index i = 0; i < inputs; i += 4) {
+      std::string matrix;
+      bool any = false;
+      // Columns of the matrix belong to inputs.
+      for (Eigen::Index column = 0; column < 4; ++column)
+        for (Eigen::Index row = 0; row < 4; ++row) {
+          const float w = value(i + column, o + row);
+          any = any || w != 0;
+          matrix += fmt::format("{}{:.9e}", matrix.empty() ? "" : ", ", w);
+        }
+      if (any) sum += fmt::format(" + mat4({}) * {}{}", matrix, in, i / 4);
+    }
+    out += fmt::format("  vec4 {}{} = {};\n", to, o / 4, sum);
+  }
+  return out;
+}
+
+// As scalar_layers(), by vectors.
+std::string vector_layers(const Decoder& d, RenderOptions::Precision precision) {
+  const auto ramps = [](const char* of, Eigen::Index outputs) {
+    std::string out;
+    for (Eigen::Index k = 0; 4 * k < outputs; ++k) out += fmt::format("  {0}{1} = max({0}{1}, 0.0);\n", of, k);
+    return out;
+  };
+  return "  vec4 x0 = low, x1 = high, x2 = vec4(ray, 0.0);\n" + vector_layer(d.weights0, d.bias0, "x", "a", precision) +
+         ramps("a", d.bias0.size()) + vector_layer(d.weights1, d.bias1, "a", "b", precision) +
+         ramps("b", d.bias1.size()) + vector_layer(d.weights2, d.bias2, "b", "sum", precision) +
+         "  float c0 = sum0.x, c1 = sum0.y, c2 = sum0.z;\n";
+}
+
 }  // namespace
 
 std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decoder>>& decoders,
-                                   RenderOptions::Precision precision) {
-  static const char* const inputs[] = {"low.x",  "low.y",  "low.z", "low.w", "high.x", "high.y",
-                                       "high.z", "high.w", "ray.x", "ray.y", "ray.z"};
+                                   RenderOptions::Precision precision, RenderOptions::Arithmetic arithmetic) {
   std::string out;
   for (std::size_t k = 0; k < decoders.size(); ++k) {
     const ColorRule rule = decoders[k]->rule;
@@ -39,17 +101,9 @@ std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decod
     }
     if (rule == ColorRule::diffuse_and_network)
       out += "  float share = low.x;\n  low /= share;\n  high /= share;\n  ray /= share;\n";
-    for_each_neuron(*decoders[k], [&](int layer, Eigen::Index j, double bias, const Eigen::VectorXd& weights) {
-      out += fmt::format("  float {}{} = ", "abc"[layer], j);
-      std::string sum = fmt::format("{:.9e}", rounded(bias, precision));
-      for (Eigen::Index i = 0; i < weights.size(); ++i) {
-        const float w = rounded(weights[i], precision);
-        if (w == 0) continue;
-        sum += layer == 0 ? fmt::format(" + {:.9e} * {}", w, inputs[i])
-                          : fmt::format(" + {:.9e} * {}{}", w, "ab"[layer - 1], i);
-      }
-      out += layer < 2 ? fmt::format("max({}, 0.0);\n", sum) : sum + ";\n";
-    });
+    out += arithmetic == Arithmetic::vectors
+               ? vector_layers(*decoders[k], precision)
+               : scalar_layers(*decoders[k], precision, arithmetic == Arithmetic::all_scalars);
     out += rule == ColorRule::network ? "  return 1.0 / (1.0 + exp(-vec3(c0, c1, c2)));\n}\n"
                                       : "  return min(low.yzw + 1.0 / (1.0 + exp(-vec3(c0, c1, c2))), 1.0);\n}\n";
   }

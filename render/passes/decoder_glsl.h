@@ -8,9 +8,10 @@
 
 namespace rebake {
 
-/// GLSL text of `vec3 decode(int k, vec4 low, vec4 high, vec3 ray)` with weights as literals; zero weights are omitted.
+/// GLSL text of `vec3 decode(int k, vec4 low, vec4 high, vec3 ray)` with weights as literals.
 std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decoder>>& decoders,
-                                   RenderOptions::Precision precision);
+                                   RenderOptions::Precision precision,
+                                   RenderOptions::Arithmetic arithmetic = RenderOptions::Arithmetic::scalars);
 
 /// Contents of the buffers of decoder_buffer.glsl.
 struct DecoderBuffers {

@@ -77,8 +77,11 @@ std::string decoder_preamble(const PassInput& input) {
   const FramePlan& plan = input.plan;
   if (plan.options.weights == RenderOptions::Weights::constants) {
     DecoderText& made = input.state.text;
-    if (made.text.empty() || made.decoders != plan.decoders || made.precision != plan.options.precision)
-      made = {plan.decoders, plan.options.precision, decoder_constants_glsl(plan.decoders, plan.options.precision)};
+    const RenderOptions& options = plan.options;
+    if (made.text.empty() || made.decoders != plan.decoders || made.precision != options.precision ||
+        made.arithmetic != options.arithmetic)
+      made = {plan.decoders, options.precision, options.arithmetic,
+              decoder_constants_glsl(plan.decoders, options.precision, options.arithmetic)};
     return made.text;
   }
   DecoderTables& tables = input.state.tables;

@@ -163,6 +163,22 @@ TEST(Picture, WideDecodersFromConstantsAndBuffer) {
     expect_as_cast(scene_of(object), view_from({0, 1, 3}), {weights, {}, {}});
 }
 
+TEST(Picture, AnyArithmeticOfConstantsIsTheSamePicture) {
+  // Widths that are no multiples of 4, and a layer whose weights are mostly 0.
+  auto object = std::make_shared<BakedObject>(*made_object());
+  auto decoder = std::make_shared<Decoder>(made_decoder(5, 13, 10));
+  decoder->weights1.topRows(8).setZero();
+  object->decoder = decoder;
+  for (const auto arithmetic : {RenderOptions::Arithmetic::all_scalars, RenderOptions::Arithmetic::vectors})
+    for (const auto shading : {RenderOptions::Shading::deferred, RenderOptions::Shading::forward}) {
+      RenderOptions options;
+      options.weights = RenderOptions::Weights::constants;
+      options.shading = shading;
+      options.arithmetic = arithmetic;
+      expect_as_cast(scene_of(object), view_from({0, 1, 3}, 1), options);
+    }
+}
+
 TEST(Picture, ForwardShadingIsTheSamePicture) {
   const Scene scene = together(
       {placed(made_object({.seed = 1}), moved(-0.4, 0, 0)), placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))});

@@ -68,7 +68,7 @@ std::optional<DprtMethod> add_learned_methods(const StudyInput& input, const Dpr
   DprtCurve curve;
   const DprtMethod published = published_network(traced, options, base, curve, input.progress);
   methods.push_back(published);
-  methods.push_back(rotated_network(traced, options, input.progress));
+  methods.push_back(rotated_network(traced, options, base, input.progress));
   PlottedLine training{"training frames", {}}, held_out{"held-out frames", {}};
   for (const auto& [epoch, loss, held_out_loss, minutes] : curve) {
     training.points.push_back({epoch, loss});

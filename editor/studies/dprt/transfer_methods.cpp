@@ -140,7 +140,7 @@ void write_curve(const fs::path& file, const DprtCurve& rows) {
 }
 
 // Progress with an estimated duration. The share of an interrupted training counts from where it goes on.
-Progress timed(const std::string& title, const Progress& progress, std::function<std::string()> more) {
+Progress timed(const std::string& title, const Progress& progress, const std::function<std::string()>& more) {
   return Progress([=, start = std::chrono::steady_clock::now(), from = -1.0](std::string_view, double done) mutable {
     if (from < 0) from = done;
     const double share = (done - from) / std::max(1e-9, 1 - from);
@@ -249,7 +249,8 @@ DprtMethod published_network(const TracedFrames& traced, const DprtOptions& opti
   return method;
 }
 
-DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& options, const Progress& progress) {
+DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& options, const std::string& base,
+                           const Progress& progress) {
   UnetTransfer::Training training(traced.rest, GeometryImage(grid_chart(traced.side), traced.side));
   for (std::size_t k = 0; k < traced.frames.size(); ++k) {
     if (is_held_out(k)) continue;
@@ -262,6 +263,7 @@ DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& option
   how.epochs = options.epochs;
   how.cuda = options.cuda;
   how.threads = processor_threads();
+  how.checkpoint = base + "-rotated.checkpoint";
   const auto start = std::chrono::steady_clock::now();
   const auto net = std::make_shared<const UnetTransfer>(
       training.learned(how, timed("Rebake's network", progress, [] { return std::string(); })));

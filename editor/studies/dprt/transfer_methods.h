@@ -34,8 +34,9 @@ std::vector<DprtMethod> linear_methods(const TracedFrames& traced, const Progres
 /// The published network. `base`: path of its checkpoint, curve and file, without their endings; they are kept.
 DprtMethod published_network(const TracedFrames& traced, const DprtOptions& options, const std::string& base,
                              DprtCurve& curve, const Progress& progress);
-/// Rebake's own variant: added skip connections, deviations from the mean in rotated frames.
-DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& options, const Progress& progress);
+/// Rebake's own variant: added skip connections, deviations from the mean in rotated frames. `base`: as above.
+DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& options, const std::string& base,
+                           const Progress& progress);
 /// Tracing with this number of rays per texel.
 DprtMethod traced_method(const TracedFrames& traced, int rays);
 

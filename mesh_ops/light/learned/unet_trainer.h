@@ -15,7 +15,7 @@ struct UnetImages {
   std::size_t poses = 0;
   std::vector<float> images;   ///< [pose][unet_inputs][row][column]: position and normal (see unet.h)
   std::vector<float> targets;  ///< expected outputs: [pose][unet_outputs][row][column] (see unet.h)
-  std::size_t held_out = 0;    ///< so many of the last poses are not trained on, but measured after each epoch
+  std::size_t held_out = 0;    ///< this number of the last poses is not trained on, but measured after each epoch
 };
 
 /// Training parameters. `channels`: those of the finest level, a multiple of 8; `batch`: poses per step.
