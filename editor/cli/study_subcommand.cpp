@@ -37,12 +37,12 @@ void describe_study(SubcommandDescription& command) {
                  "dprt: head, fish, cloth, space (shapes between head and plane) or all", "NAME [cloth]");
   command.option("--meshes", options->dprt.meshes, "dprt: files with one mesh per frame instead (OBJ, OFF, PLY)",
                  "'PATTERN'");
-  command.option("--side", options->dprt.side, "dprt: texels per side", "N [64]").between(32, 1024);
+  command.option("--side", options->dprt.side, "dprt: texels per side", "N [64]").between(64, 1024);
   command
       .option("--channels", options->dprt.channels, "dprt: channels of the network's finest level; published: 32",
               "N [16]")
       .between(8, 128);
-  command.option("--epochs", options->dprt.epochs, "dprt: passes over the frames; published: 500 to 1000", "N [100]")
+  command.option("--epochs", options->dprt.epochs, "dprt: passes over the frames; published: 500 to 1000", "N [60]")
       .between(1, 100000);
   command.flag("--cuda", options->dprt.cuda, "dprt: train on the graphics card");
   command.flag("--paper", options->dprt.paper,

@@ -64,6 +64,7 @@ StudyTable study_decoder(const StudyInput& input) {
   // One sample per pixel, since forward shading supports no more.
   StudyInput one = input;
   one.view.samples = 1;
+  input.say("driver: " + input.renderer().device());
   const RenderOptions exact = options_of(Weights::constants, Shading::deferred);
   const Image reference = input.renderer().render(input.scene, one.view, exact);
   struct Choice {
@@ -77,7 +78,7 @@ StudyTable study_decoder(const StudyInput& input) {
       {"constants, mat4 and vec4",
        options_of(Weights::constants, Shading::deferred, Precision::full, Arithmetic::vectors)},
       {"buffer, float", options_of(Weights::buffer, Shading::deferred)},
-      {"buffer, half", options_of(Weights::buffer, Shading::deferred, Precision::half)},
+      {"buffer, weights rounded to half", options_of(Weights::buffer, Shading::deferred, Precision::half)},
       {"forward, constants", options_of(Weights::constants, Shading::forward)},
       {"forward, constants, mat4 and vec4",
        options_of(Weights::constants, Shading::forward, Precision::full, Arithmetic::vectors)},

@@ -18,6 +18,13 @@ namespace rebake {
 
 namespace {
 
+// A text in a gnuplot script, without its commands and markup.
+std::string plotted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  return result + "' noenhanced";
+}
+
 // Runs gnuplot on a script and returns its output. Throws Error if gnuplot fails.
 std::string run_gnuplot(const std::string& script) {
   std::string name = (std::filesystem::temp_directory_path() / "rebake-plot-XXXXXX").string();
@@ -126,13 +133,13 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
     // A logarithmic axis has no zero: exact values are drawn at its lower end.
     const auto drawn = [](double value, bool log) { return log ? std::max(value, 1e-17) : value; };
     data += fmt::format("{} {}\n", drawn(row.values[x], table.log_x), drawn(row.values[table.y], table.log_y));
-    points += fmt::format("{}$rows every ::{}::{} using 1:2 with points pt {} ps 1.4 title \"{}\"", k == 0 ? "" : ", ",
-                          k, k, 4 + k, row.choice);
+    points += fmt::format("{}$rows every ::{}::{} using 1:2 with points pt {} ps 1.4 title {}", k == 0 ? "" : ", ", k,
+                          k, 4 + k, plotted(row.choice));
   }
   const std::string plot = fmt::format(
-      "$rows << EOD\n{}EOD\nset title \"{}\"\nset xlabel \"{}\"\nset ylabel \"{}\"\n{}{}"
+      "$rows << EOD\n{}EOD\nset title {}\nset xlabel {}\nset ylabel {}\n{}{}"
       "set grid\nset key outside right top\nset offsets graph 0.05, graph 0.05, graph 0.05, graph 0.05\n",
-      data, study.help, table.columns[x], table.columns[table.y],
+      data, plotted(study.help), plotted(table.columns[x]), plotted(table.columns[table.y]),
       table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "",
       table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
   // The plot is as high as its legend. Its output comes through a pipe, so that no output path reaches gnuplot.
@@ -157,11 +164,11 @@ void write_line_plot(const std::string& title, const std::string& x, const std::
     data += fmt::format("$line{} << EOD\n", k);
     for (const auto& [at, value] : lines[k].points) data += fmt::format("{} {}\n", at, value);
     data += "EOD\n";
-    drawn += fmt::format("{}$line{} using 1:2 with lines lw 2 title \"{}\"", k == 0 ? "" : ", ", k, lines[k].name);
+    drawn += fmt::format("{}$line{} using 1:2 with lines lw 2 title {}", k == 0 ? "" : ", ", k, plotted(lines[k].name));
   }
   const std::string plot =
-      fmt::format("{}set title \"{}\"\nset xlabel \"{}\"\nset ylabel \"{}\"\n{}set grid\nset key outside right top\n",
-                  data, title, x, y, log_y ? "set logscale y\n" : "");
+      fmt::format("{}set title {}\nset xlabel {}\nset ylabel {}\n{}set grid\nset key outside right top\n", data,
+                  plotted(title), plotted(x), plotted(y), log_y ? "set logscale y\n" : "");
   for (const auto& [terminal, extension] :
        {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
     write_file_atomically(base + "." + extension,

@@ -33,7 +33,7 @@ struct DprtOptions {
   std::string meshes;            ///< pattern of files with one mesh per frame, instead of `object`; empty: none
   int side = 64;                 ///< texels per side of the geometry images
   int channels = 16;             ///< of the network's finest level
-  int epochs = 100;
+  int epochs = 60;
   bool cuda = false;   ///< train on the graphics card
   bool paper = false;  ///< the published sizes instead of `side`, `channels` and `epochs`
 };

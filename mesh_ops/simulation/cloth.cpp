@@ -19,6 +19,7 @@ Cloth::Cloth(std::vector<Vec3> places, std::vector<double> kilograms, std::vecto
 }
 
 void Cloth::advance(double seconds, int substeps, const std::vector<Vec3>* held) {
+  if (substeps < 1) throw std::invalid_argument("a cloth advances in at least one step");
   const double h = seconds / substeps;
   std::vector<std::uint32_t> fixed;
   std::vector<Vec3> from;
@@ -28,6 +29,7 @@ void Cloth::advance(double seconds, int substeps, const std::vector<Vec3>* held)
         fixed.push_back(p);
         from.push_back(positions[p]);
       }
+  if (held != nullptr && held->size() != fixed.size()) throw std::invalid_argument("each held point needs a place");
   for (int k = 0; k < substeps; ++k) {
     const double share = static_cast<double>(k + 1) / substeps;
     for (std::size_t i = 0; i < fixed.size(); ++i) positions[fixed[i]] = from[i] + share * ((*held)[i] - from[i]);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/light/learned/unet_trainer.h"
 
 namespace rebake {
@@ -27,6 +28,19 @@ TestFrame test_frame(const TracedFrames& traced, std::vector<Vec3> places) {
   return test;
 }
 
+double milliseconds_of(const DprtMethod& method, const TracedFrames& traced, const TestFrame& test, int repeats) {
+  using Needs = DprtMethod::Needs;
+  const std::vector<Mat3> none(test.places.size(), Mat3::Identity());
+  return median_milliseconds(repeats, [&] {
+    if (method.needs == Needs::positions)
+      method.predict(test.sites, test.places);
+    else if (method.needs == Needs::normals)
+      method.predict({none, vertex_sites(traced.rest, {test.places, traced.rest.faces}, none)}, test.places);
+    else
+      method.predict(sites_of(traced.rest, test.places), test.places);
+  });
+}
+
 double percent_off(const DprtMethod& method, const std::vector<TestFrame>& tests, const Progress& progress) {
   double off = 0, all = 0;
   for (const TestFrame& test : tests) {
@@ -41,12 +55,17 @@ double percent_off(const DprtMethod& method, const std::vector<TestFrame>& tests
   return 100 * std::sqrt(off / all);
 }
 
-fs::path work_folder(const StudyInput& input) {
-  const fs::path work = input.folder / "dprt-work";
+fs::path own_folder(const StudyInput& input) {
+  const fs::path folder = input.folder / "dprt", marker = folder / "study.json";
+  const std::string contents = "{\"software\": \"Rebake\", \"study\": \"dprt\"}\n";
   std::error_code error;
-  fs::create_directories(work, error);
-  if (error) throw FileError(work, "cannot be created: " + error.message());
-  return work;
+  if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !fs::is_empty(folder, error)) &&
+      (!fs::is_regular_file(marker, error) || read_file(marker) != contents))
+    throw FileError(folder, "exists and was not made by this study; choose another output folder");
+  fs::create_directories(folder, error);
+  if (error) throw FileError(folder, "cannot be created: " + error.message());
+  write_file_atomically(marker, contents, {});
+  return folder;
 }
 
 void say_layout(const StudyInput& input, const std::string& name, const TracedFrames& traced) {
@@ -63,8 +82,10 @@ std::optional<DprtMethod> add_learned_methods(const StudyInput& input, const Dpr
     input.say("warning: LibTorch is missing, so there are no networks in the table");
     return {};
   }
-  const std::string base =
-      (work_folder(input) / fmt::format("{}-{}-{}-{}", name, options.side, options.channels, options.epochs)).string();
+  // Checkpoints of other data have other names.
+  const std::string base = (own_folder(input) / fmt::format("{}-{}-{}-{}-{:08x}", name, options.side, options.channels,
+                                                            options.epochs, traced.hash & 0xFFFFFFFFU))
+                               .string();
   DprtCurve curve;
   const DprtMethod published = published_network(traced, options, base, curve, input.progress);
   methods.push_back(published);
@@ -74,10 +95,12 @@ std::optional<DprtMethod> add_learned_methods(const StudyInput& input, const Dpr
     training.points.push_back({epoch, loss});
     held_out.points.push_back({epoch, held_out_loss});
   }
-  if (curve.size() > 1)
-    write_line_plot(fmt::format("{}, {}² texels, {} channels", name, options.side, options.channels), "epoch",
-                    "L1 loss", true, {training, held_out},
-                    (input.folder / fmt::format("dprt-{}-curve", name)).string());
+  if (curve.size() > 1) try {
+      write_line_plot(name + fmt::format(", {}² texels, {} channels", options.side, options.channels), "epoch",
+                      "L1 loss", true, {training, held_out}, (own_folder(input) / (name + "-curve")).string());
+    } catch (const Error& error) {
+      input.say(fmt::format("warning: the learning curve was not plotted: {}", error.what()));
+    }
   return published;
 }
 

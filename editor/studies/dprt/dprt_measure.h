@@ -21,11 +21,14 @@ std::vector<TestFrame> held_out_frames(const TracedFrames& traced);
 /// Traces a pose.
 TestFrame test_frame(const TracedFrames& traced, std::vector<Vec3> places);
 
+/// Median time in milliseconds of a prediction, with what the method needs of the pose.
+double milliseconds_of(const DprtMethod& method, const TracedFrames& traced, const TestFrame& test, int repeats);
 /// Root mean square error over the coefficients of all texels and poses, in percent of their root mean square.
 double percent_off(const DprtMethod& method, const std::vector<TestFrame>& tests, const Progress& progress);
 
-/// Folder for traces, checkpoints and networks, created.
-std::filesystem::path work_folder(const StudyInput& input);
+/// The folder dprt in the output folder, for traces, checkpoints, networks, curves and pictures; created. Throws
+/// FileError if it exists and another program made it.
+std::filesystem::path own_folder(const StudyInput& input);
 /// Says how the object was laid out.
 void say_layout(const StudyInput& input, const std::string& name, const TracedFrames& traced);
 

@@ -56,10 +56,9 @@ DprtOptions sizes_of(const DprtOptions& wanted, const std::string& object) {
 void study_object(const StudyInput& input, const std::string& name, StudyTable& table) {
   const DprtOptions options = sizes_of(input.dprt, name);
   const AnimatedObject object = object_named(name, input);
-  const fs::path work = work_folder(input);
-  const TracedFrames traced =
-      traced_frames(object, options.side, training_rays, work / fmt::format("{}-{}.traces", object.name, options.side),
-                    input.progress);
+  const fs::path own = own_folder(input);
+  const TracedFrames traced = traced_frames(object, options.side, training_rays,
+                                            own / (object.name + fmt::format("-{}", options.side)), input.progress);
   say_layout(input, object.name, traced);
   const std::vector<TestFrame> tests = held_out_frames(traced), beyond = frames_beyond(traced, input.progress);
   std::vector<DprtMethod> methods = rest_methods(traced, 4 * training_rays);
@@ -68,8 +67,7 @@ void study_object(const StudyInput& input, const std::string& name, StudyTable& 
   const double every_frame = static_cast<double>(traced.frames.size() - tests.size()) *
                              static_cast<double>(traced.rest.vertices.size()) * sh::count * sizeof(float);
   for (const DprtMethod& method : methods) {
-    const TestFrame& first = tests.front();
-    const double milliseconds = median_milliseconds(input.frames, [&] { method.predict(first.sites, first.places); });
+    const double milliseconds = milliseconds_of(method, traced, tests.front(), input.frames);
     table.rows.push_back(
         {object.name + ": " + method.name,
          {milliseconds, percent_off(method, tests, input.progress), percent_off(method, beyond, input.progress),
@@ -79,7 +77,7 @@ void study_object(const StudyInput& input, const std::string& name, StudyTable& 
   if (published) {
     const TestFrame& shown = tests[tests.size() / 2];
     write_dprt_picture(input, traced, shown.places, shown.truth, published->predict(shown.sites, shown.places),
-                       input.folder / fmt::format("dprt-{}.png", object.name));
+                       own / fmt::format("{}.png", object.name));
   }
 }
 
@@ -95,13 +93,16 @@ StudyTable study_dprt(const StudyInput& input) {
                    true,
                    true};
   const DprtOptions& options = input.dprt;
+  if (const int step = unet_side_step(UnetForm::added); !options.paper && options.side % step != 0)
+    throw FieldError("--side", fmt::format("must be a multiple of {}", step));
+  if (options.channels % 8 != 0) throw FieldError("--channels", "must be a multiple of 8");
   if (!options.paper)
     input.say(
         fmt::format("sizes: {}² texels, {} channels, {} epochs (published: 256² and 512² texels, 32 channels, 500 to "
                     "1000 epochs; --paper); about 20 minutes per object with the default sizes on two cores",
                     options.side, options.channels, options.epochs));
   if (options.object == "space") {
-    study_shape_space(input, table);
+    study_shape_space(input, sizes_of(options, "space"), table);
     return table;
   }
   if (options.object == "all" && options.meshes.empty())

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "editor/studies/dprt/dprt_measure.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/light/learned/disk_chart.h"
 
@@ -72,19 +73,21 @@ void write_sweep(const StudyInput& input, const Sweep& sweep, const std::vector<
     }
     csv += "\n";
   }
-  const std::string base = (input.folder / sweep.file).string();
+  const std::string base = (own_folder(input) / sweep.file).string();
   write_file_atomically(base + ".csv", csv, {});
-  write_line_plot(sweep.title, sweep.x, "error %", false, lines, base);
+  try {
+    write_line_plot(sweep.title, sweep.x, "error %", false, lines, base);
+  } catch (const Error& error) {
+    input.say(fmt::format("warning: {} was not plotted: {}", sweep.file, error.what()));
+  }
 }
 
 }  // namespace
 
-void study_shape_space(const StudyInput& input, StudyTable& table) {
-  const DprtOptions& options = input.dprt;
+void study_shape_space(const StudyInput& input, const DprtOptions& options, StudyTable& table) {
   const AnimatedObject object = random_shapes();
-  const TracedFrames traced =
-      traced_frames(object, options.side, training_rays,
-                    work_folder(input) / fmt::format("space-{}.traces", options.side), input.progress);
+  const TracedFrames traced = traced_frames(object, options.side, training_rays,
+                                            own_folder(input) / fmt::format("space-{}", options.side), input.progress);
   say_layout(input, object.name, traced);
   const GeometryImage image(disk_chart(object.rest), options.side);
   const auto test = [&](const Weights& expression, double head) {
@@ -95,8 +98,7 @@ void study_shape_space(const StudyInput& input, StudyTable& table) {
   const std::vector<TestFrame> tests = held_out_frames(traced);
   for (const DprtMethod& method : methods) {
     StudyTable::Row row{"space: " + method.name, std::vector<double>(table.columns.size(), DprtMethod::nan)};
-    row.values[0] =
-        median_milliseconds(input.frames, [&] { method.predict(tests.front().sites, tests.front().places); });
+    row.values[0] = milliseconds_of(method, traced, tests.front(), input.frames);
     row.values[1] = percent_off(method, tests, input.progress);
     row.values[3] = method.loss;
     row.values[4] = method.held_out_loss;
@@ -105,9 +107,9 @@ void study_shape_space(const StudyInput& input, StudyTable& table) {
     row.values[8] = method.minutes;
     table.rows.push_back(std::move(row));
   }
-  Sweep over{"dprt-space-sweep", "shapes between a plane (0) and a head (1)", "share of the head", {}};
-  Sweep along{"dprt-space-path",
-              "from the mean shape (0) to an open jaw (1), which no training shape has",
+  Sweep over{"space-sweep", "shapes between a plane (0) and a head (1)", "share of the head", {}};
+  Sweep along{"space-path",
+              "from the half-way shape (0) to an open jaw (1), which no training shape has",
               "share of the path",
               {}};
   for (int k = 0; k <= sweep_steps; ++k) {

@@ -38,7 +38,7 @@ class TraceCache {
     out_.open(file_, std::ios::binary | std::ios::app);
     if (!out_) throw FileError(file_, "cannot be written");
   }
-  const std::vector<std::vector<float>>& frames() const { return frames_; }
+  std::vector<std::vector<float>> take_frames() { return std::move(frames_); }
   void add(const std::vector<float>& frame) {
     if (file_.empty()) return;
     out_.write(reinterpret_cast<const char*>(frame.data()), bytes());
@@ -53,11 +53,19 @@ class TraceCache {
   std::ofstream out_;
 };
 
-std::uint64_t hash_of(const AnimatedObject& object, int side, int rays) {
-  std::string bytes = fmt::format("{} {} {}", side, rays, object.frames.size());
-  for (const std::vector<Vec3>& frame : object.frames)
-    bytes.append(reinterpret_cast<const char*>(frame.data()), frame.size() * sizeof(Vec3));
-  return content_hash(bytes);
+std::uint64_t hash_of(const TracedFrames& traced, int rays) {
+  std::string bytes = fmt::format("{} {} {} ", traced.side, rays, traced.frames.size());
+  const auto add = [&](const auto& values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+  };
+  add(traced.rest.vertices);
+  std::uint64_t hash = content_hash(bytes);
+  for (const std::vector<Vec3>& frame : traced.frames) {
+    bytes = fmt::format("{} ", hash);
+    add(frame);
+    hash = content_hash(bytes);
+  }
+  return hash;
 }
 
 }  // namespace
@@ -99,8 +107,12 @@ TracedFrames traced_frames(const AnimatedObject& object, int side, int rays, con
   result.undersampled = image.undersampled(object.rest);
   result.rest = {texel_positions(image, object.rest.vertices), grid_chart(side).faces};
   for (const std::vector<Vec3>& frame : object.frames) result.frames.push_back(texel_positions(image, frame));
-  TraceCache kept(cache, hash_of(object, side, rays), sh::count * image.texels().size());
-  result.transfer = kept.frames();
+  result.hash = hash_of(result, rays);
+  // Traces of other data have other names.
+  fs::path file = cache;
+  if (!file.empty()) file += fmt::format("-{:016x}.traces", result.hash);
+  TraceCache kept(file, result.hash, sh::count * image.texels().size());
+  result.transfer = kept.take_frames();
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first = result.transfer.size();
   constexpr int more_for_held_out = 4;
@@ -116,7 +128,6 @@ TracedFrames traced_frames(const AnimatedObject& object, int side, int rays, con
         traced_planes(result.rest, result.frames[k], is_held_out(k) ? more_for_held_out * rays : rays));
     kept.add(result.transfer.back());
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
 

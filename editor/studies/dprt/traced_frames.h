@@ -16,7 +16,7 @@ struct TracedFrames {
   std::vector<std::vector<Vec3>> frames;  ///< [frame][texel]: positions
   std::vector<std::vector<float>>
       transfer;             ///< [frame][16 × texels]: coefficients, plane by plane, in the body's space
-  double seconds = 0;       ///< time of tracing, over all interruptions
+  std::uint64_t hash = 0;   ///< of the frames, the side and the rays
   double undersampled = 0;  ///< share of the surface; see GeometryImage::undersampled()
   bool mean_value = false;  ///< mean value weights instead of harmonic ones, which would fold
 };
@@ -24,7 +24,7 @@ struct TracedFrames {
 /// Positions of the texels for positions of the vertices.
 std::vector<Vec3> texel_positions(const GeometryImage& image, const std::vector<Vec3>& vertices);
 
-/// A frame of geometry images in detail.
+/// Rotations since rest and light sites of a pose, per texel.
 struct FrameSites {
   std::vector<Mat3> turns;  ///< rotation of the surface since rest
   std::vector<LightSite> sites;
@@ -35,8 +35,9 @@ FrameSites sites_of(const ProxyMesh& rest, const std::vector<Vec3>& frame);
 constexpr bool is_held_out(std::size_t frame) { return frame % 10 == 5; }
 
 /// Lays the object out over a square of `side`² texels by a harmonic map, and traces each frame with `rays` rays per
-/// texel; held-out frames with four times as many. `cache`: file that keeps traced frames, so that an interrupted call
-/// goes on; empty: none. Throws Error for surfaces that are no disk, FileError, and Cancelled.
+/// texel; held-out frames with four times as many. `cache`: start of the name of a file that keeps traced frames, so
+/// that an interrupted call goes on; empty: none. Surfaces that are no disk are cut. Throws Error for those that are
+/// not manifold or not connected, FileError, and Cancelled.
 TracedFrames traced_frames(const AnimatedObject& object, int side, int rays, const std::filesystem::path& cache,
                            const Progress& progress);
 

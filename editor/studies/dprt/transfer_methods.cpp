@@ -139,6 +139,18 @@ void write_curve(const fs::path& file, const DprtCurve& rows) {
   write_file_atomically(file, text, {});
 }
 
+// Adds epochs to a curve and its file. `curve` must outlive the result.
+std::function<void(int, double, double)> curve_writer(const fs::path& file, DprtCurve& curve) {
+  curve = read_curve(file);
+  return [file, &curve, start = std::chrono::steady_clock::now(), before = -1.0](int epoch, double loss,
+                                                                                 double held_out) mutable {
+    std::erase_if(curve, [&](const auto& row) { return row[0] >= epoch; });
+    if (before < 0) before = curve.empty() ? 0 : curve.back()[3];
+    curve.push_back({static_cast<double>(epoch), loss, held_out, before + minutes_since(start)});
+    write_curve(file, curve);
+  };
+}
+
 // Progress with an estimated duration. The share of an interrupted training counts from where it goes on.
 Progress timed(const std::string& title, const Progress& progress, const std::function<std::string()>& more) {
   return Progress([=, start = std::chrono::steady_clock::now(), from = -1.0](std::string_view, double done) mutable {
@@ -164,6 +176,7 @@ std::vector<DprtMethod> rest_methods(const TracedFrames& traced, int rays) {
   unchanged.predict = [rest](const FrameSites&, const std::vector<Vec3>&) { return rest; };
   rotated.name = "rotated";
   rotated.bytes = unchanged.bytes;
+  rotated.needs = DprtMethod::Needs::rotations;
   rotated.predict = [coefficients](const FrameSites& sites, const std::vector<Vec3>&) {
     const std::size_t texels = coefficients->size();
     Planes planes(sh::count * texels);
@@ -197,7 +210,8 @@ std::vector<DprtMethod> linear_methods(const TracedFrames& traced, const Progres
     method.name = name;
     method.minutes = minutes_since(start);
     method.bytes = static_cast<double>(model->memory());
-    method.parameters = method.bytes / sizeof(float);
+    method.parameters = static_cast<double>(model->mean.size() + model->components.size() + model->linear.size());
+    if (way != TransferMethod::linear) method.needs = DprtMethod::Needs::rotations;
     method.predict = [model, turns = way != TransferMethod::linear](const FrameSites& sites,
                                                                     const std::vector<Vec3>& frame) {
       return packed(model->predict(model->space.place(model->probes_in(frame))), turns ? &sites.turns : nullptr);
@@ -219,15 +233,7 @@ DprtMethod published_network(const TracedFrames& traced, const DprtOptions& opti
   training.cuda = options.cuda;
   training.threads = processor_threads();
   training.checkpoint = base + ".checkpoint";
-  curve = read_curve(base + "-curve.csv");
-  const auto start = std::chrono::steady_clock::now();
-  std::optional<double> before;  // minutes of interrupted runs
-  training.watch = [&](int epoch, double loss, double held_out) {
-    std::erase_if(curve, [&](const auto& row) { return row[0] >= epoch; });
-    if (!before) before = curve.empty() ? 0 : curve.back()[3];
-    curve.push_back({static_cast<double>(epoch), loss, held_out, *before + minutes_since(start)});
-    write_curve(base + "-curve.csv", curve);
-  };
+  training.watch = curve_writer(base + "-curve.csv", curve);
   const Progress with_time = timed("published network", progress, [&] {
     return curve.empty() ? std::string()
                          : fmt::format(", held out {:.5f} after epoch {:.0f}", curve.back()[2], curve.back()[0]);
@@ -237,6 +243,7 @@ DprtMethod published_network(const TracedFrames& traced, const DprtOptions& opti
   const std::string bytes = net->bytes();
   write_file_atomically(base + ".dprt", bytes, {});
   DprtMethod method;
+  method.needs = DprtMethod::Needs::normals;
   method.name = fmt::format("DPRT as published, {} channels, {} epochs", options.channels, options.epochs);
   method.bytes = static_cast<double>(bytes.size());
   method.parameters = static_cast<double>(unet_parameter_count(UnetForm::concatenated, options.channels));
@@ -264,14 +271,17 @@ DprtMethod rotated_network(const TracedFrames& traced, const DprtOptions& option
   how.cuda = options.cuda;
   how.threads = processor_threads();
   how.checkpoint = base + "-rotated.checkpoint";
-  const auto start = std::chrono::steady_clock::now();
+  DprtCurve curve;
+  how.watch = curve_writer(base + "-rotated-curve.csv", curve);
   const auto net = std::make_shared<const UnetTransfer>(
       training.learned(how, timed("Rebake's network", progress, [] { return std::string(); })));
   DprtMethod method;
+  method.needs = DprtMethod::Needs::rotations;
   method.name = fmt::format("Rebake's network, {} channels, {} epochs", options.channels, options.epochs);
-  method.minutes = minutes_since(start);
+  if (!curve.empty()) method.minutes = curve.back()[3];
   const UnetTransfer::State& state = net->state();
-  method.parameters = static_cast<double>(unet_parameter_count(UnetForm::added, options.channels));
+  method.parameters = static_cast<double>(unet_parameter_count(UnetForm::added, options.channels)) +
+                      static_cast<double>(state.mean.size());
   method.bytes =
       static_cast<double>((state.weights.size() + static_cast<std::size_t>(state.mean.size())) * sizeof(float));
   method.predict = [net](const FrameSites& sites, const std::vector<Vec3>&) {

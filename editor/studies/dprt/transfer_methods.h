@@ -17,9 +17,12 @@ struct DprtMethod {
   std::string name;
   /// Coefficients [16][texel] in the body's space. `sites`: of the pose; `frame`: its positions.
   std::function<std::vector<float>(const FrameSites& sites, const std::vector<Vec3>& frame)> predict;
-  double bytes = 0;                        ///< of what is stored, as a file or in memory; 0: nothing
-  double parameters = 0;                   ///< numbers that were learned
-  double minutes = 0;                      ///< of learning, without tracing
+  /// What of a pose predict() needs, which counts as a part of its time. Tracing finds everything itself.
+  enum class Needs { positions, normals, rotations };
+  Needs needs = Needs::positions;
+  double bytes = 0;       ///< size of the file of the published network, of the others in memory; 0: stores nothing
+  double parameters = 0;  ///< number of learned values; 0: learns nothing
+  double minutes = 0;     ///< time of learning over all interruptions, without tracing
   double loss = nan, held_out_loss = nan;  ///< L1 losses of the network's outputs
   static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 };

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "mesh_ops/base/error.h"
 
@@ -122,7 +123,9 @@ DiskChart disk_chart(const ProxyMesh& mesh, int tips) {
   // Corners of an open mesh belong on corners of the square; a cut has none.
   const bool open = chart.source.size() == mesh.vertices.size();
   const auto [a, b, c, d] = sharp_corners(disk, border);
-  const Border square = open ? Border(a, b, c, d) : Border();
+  // Few, uneven edges may put two corners on one vertex.
+  const bool distinct = std::set<Vertex>{a, b, c, d}.size() == 4;
+  const Border square = open && distinct ? Border(a, b, c, d) : Border();
   lay_out(disk, chart, Harmonic(square));
   chart.mean_value = folds(chart);
   if (chart.mean_value) lay_out(disk, chart, MeanValue(square));

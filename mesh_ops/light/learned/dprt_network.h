@@ -16,7 +16,7 @@ namespace rebake {
 /// are mapped linearly from 0 … 1, the range of the network's sigmoid. It knows nothing of the object but its weights.
 class DprtNetwork {
  public:
-  /// What maps poses and coefficients to and from the network's values.
+  /// Ranges that normalise positions and coefficients.
   struct Ranges {
     Vec3 center = Vec3::Zero();                  ///< of the positions
     double reach = 1;                            ///< half the longest side of their box, which becomes 1

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/base/module.h"
 #include "mesh_ops/light/learned/unet_training.h"
 
@@ -26,6 +27,16 @@ const ModuleSymbol& module() {
     return result;
   }();
   return found;
+}
+
+// Hash of everything that the numbers of a training depend on.
+std::uint64_t identity_of(const UnetImages& images, const UnetTraining& training) {
+  const auto of = [](const std::vector<float>& values) {
+    return content_hash({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)});
+  };
+  return content_hash(fmt::format("{} {} {} {} {} {} {} {} {} {} {}", static_cast<int>(training.form), images.side,
+                                  images.poses, images.held_out, training.channels, training.epochs, training.batch,
+                                  training.rate, training.seed, of(images.images), of(images.targets)));
 }
 
 }  // namespace
@@ -63,6 +74,7 @@ Unet train_unet(const UnetImages& images, const UnetTraining& training, const Pr
                       last_share * training.rate,
                       training.seed,
                       training.cuda,
+                      checkpoint.empty() ? 0 : identity_of(images, training),
                       checkpoint.c_str(),
                       training.checkpoint_seconds,
                       [](void* user, double done, double loss) {

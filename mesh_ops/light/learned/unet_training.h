@@ -21,6 +21,7 @@ struct UnetTask {
   double rate, last_rate;       ///< learning rate at the start and at the end, along a cosine
   std::uint64_t seed;
   bool cuda;                  ///< train on the graphics card
+  std::uint64_t identity;     ///< of everything above; checkpoints of others are refused
   const char* checkpoint;     ///< file to write and to go on from; empty: none
   double checkpoint_seconds;  ///< at least this long between two checkpoints
   /// Called with the finished share 0 … 1 and the mean loss; returns false to cancel; the last checkpoint stays.
@@ -34,7 +35,7 @@ struct UnetTask {
 /// Returns 0 on success, 1 if cancelled, 2 on failure with `error` filled in. The same seed, threads and processor give
 /// the same weights, with and without interruptions between epochs.
 using TrainUnet = int (*)(const UnetTask* task, float* result, char* error, std::size_t error_size);
-/// Name of the exported TrainUnet function.
-inline constexpr const char* train_unet_symbol = "rebake_train_unet";
+/// Name of the exported TrainUnet function, with the version of this interface: modules of others are not found.
+inline constexpr const char* train_unet_symbol = "rebake_train_unet_2";
 
 }  // namespace rebake

@@ -182,9 +182,13 @@ TEST(Cloth, IsStableWhenAMillionTimesAsStiffAndAtAHundredTimesTheStep) {
     }
 }
 
-TEST(Cloth, RefusesSpringsBetweenMissingPoints) {
+TEST(Cloth, RefusesWhatDoesNotFit) {
   EXPECT_THROW(Cloth({{0, 0, 0}}, {1}, {{{0, 1}, 1, 0}}), std::invalid_argument);
   EXPECT_THROW(Cloth({{0, 0, 0}}, {}, {}), std::invalid_argument);
+  Cloth one = chain(2, 1, true);
+  const std::vector<Vec3> too_few{Vec3(0, 0, 0)};
+  EXPECT_THROW(one.advance(1, 1, &too_few), std::invalid_argument);
+  EXPECT_THROW(one.advance(1, 0), std::invalid_argument);
 }
 
 }  // namespace

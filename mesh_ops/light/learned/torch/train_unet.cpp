@@ -110,7 +110,7 @@ struct Training {
     all.write("network", of_network);
     all.write("adam", of_adam);
     all.write("epoch", torch::tensor(epoch));
-    all.write("epochs", torch::tensor(task.epochs));
+    all.write("identity", torch::tensor(static_cast<std::int64_t>(task.identity)));
     const std::string next = std::string(task.checkpoint) + ".next";
     all.save_to(next);
     std::filesystem::rename(next, task.checkpoint);
@@ -121,13 +121,13 @@ struct Training {
     all.load_from(task.checkpoint, device);
     all.read("network", of_network);
     all.read("adam", of_adam);
+    Tensor number;
+    all.read("identity", number);
+    if (number.item<std::int64_t>() != static_cast<std::int64_t>(task.identity))
+      throw std::runtime_error("the checkpoint is of a training with other data or options; remove it: " +
+                               std::string(task.checkpoint));
     network.load(of_network);
     adam.load(of_adam);
-    Tensor number;
-    all.read("epochs", number);
-    if (number.item<int>() != task.epochs)
-      throw std::runtime_error("the checkpoint is of a training with another number of epochs; remove it: " +
-                               std::string(task.checkpoint));
     all.read("epoch", number);
     epoch = number.item<int>();
   }
@@ -206,14 +206,16 @@ int train(const rebake::UnetTask& task, float* result) {
   training.network.eval();
   const torch::NoGradGuard guard;
   const std::vector<float> folded = training.network.folded();
+  if (folded.size() != rebake::unet_weight_count(task.form, task.channels))
+    throw std::runtime_error("the checkpoint holds a network of another size; remove it");
   std::memcpy(result, folded.data(), folded.size() * sizeof(float));
   return 0;
 }
 
 }  // namespace
 
-extern "C" [[gnu::visibility("default")]] int rebake_train_unet(const rebake::UnetTask* task, float* result,
-                                                                char* error, std::size_t error_size) {
+extern "C" [[gnu::visibility("default")]] int rebake_train_unet_2(const rebake::UnetTask* task, float* result,
+                                                                  char* error, std::size_t error_size) {
   try {
     return train(*task, result);
   } catch (const std::exception& failure) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 
 #include "editor/studies/dprt/traced_frames.h"
@@ -88,22 +89,28 @@ TEST(AnimatedFiles, AreReadInOrderAndMustHaveTheSameTriangles) {
 
 TEST(TracedFrames, GoOnFromTheirCache) {
   const test::TemporaryFolder folder;
-  const AnimatedObject object = animated_cloth(4);
+  const AnimatedObject object = animated_cloth(7);
   constexpr int side = 32, rays = 16;
   const TracedFrames at_once = traced_frames(object, side, rays, {}, {});
-  const auto cache = folder.path() / "traces";
+  const auto start = folder.path() / "traces";
   int reports = 0;
   const Progress stops([&](std::string_view what, double) {
-    if (what.starts_with("tracing 4 frames") && ++reports == 3) throw Cancelled();
+    if (what.starts_with("tracing 7 frames") && ++reports == 3) throw Cancelled();
   });
-  EXPECT_THROW(traced_frames(object, side, rays, cache, stops), Cancelled);
+  EXPECT_THROW(traced_frames(object, side, rays, start, stops), Cancelled);
+  const std::filesystem::path cache = std::filesystem::directory_iterator(folder.path())->path();
   // A kill may leave a part of a frame.
   std::filesystem::resize_file(cache, std::filesystem::file_size(cache) - 100);
-  EXPECT_EQ(traced_frames(object, side, rays, cache, {}).transfer, at_once.transfer);
-  EXPECT_EQ(traced_frames(object, side, rays, cache, {}).transfer, at_once.transfer) << "from the cache alone";
-  // Another object's traces are not taken.
-  const AnimatedObject other = animated_fish(4);
-  EXPECT_EQ(traced_frames(other, side, rays, cache, {}).transfer, traced_frames(other, side, rays, {}, {}).transfer);
+  EXPECT_EQ(traced_frames(object, side, rays, start, {}).transfer, at_once.transfer);
+  EXPECT_EQ(traced_frames(object, side, rays, start, {}).transfer, at_once.transfer) << "from the cache alone";
+  // Held-out frames have four times as many rays.
+  EXPECT_EQ(at_once.transfer[5], traced_planes(at_once.rest, at_once.frames[5], 4 * rays));
+  EXPECT_EQ(at_once.transfer[6], traced_planes(at_once.rest, at_once.frames[6], rays));
+  // Traces of another layout of the same vertices are not taken.
+  AnimatedObject other = object;
+  for (Face& face : other.rest.faces) std::rotate(face.begin(), face.begin() + 1, face.end());
+  for (Vec3& p : other.rest.vertices) p.x() *= 2;
+  EXPECT_EQ(traced_frames(other, side, rays, start, {}).transfer, traced_frames(other, side, rays, {}, {}).transfer);
 }
 
 }  // namespace
