@@ -201,7 +201,7 @@ double TrainingRun::work_of(std::size_t steps) const {
   return open_steps_of_time(part);
 }
 
-// One step with what is due after it: checkpoint, preview, messages, progress.
+// One step, then whichever of these is due: checkpoint, preview, messages, progress.
 void TrainingRun::advance(Loop& loop, const Progress& progress) {
   const TrainingStage stage = reconstruction_->stage();
   loop.error += reconstruction_->step();

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A file of traced frames: the hash of what they were traced from, then one block of floats per frame. It is not
+// A file of traced frames: the hash of their positions, then one block of floats per frame. It is not
 // portable and may end within a block.
 class TraceCache {
  public:
