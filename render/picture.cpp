@@ -141,6 +141,7 @@ class Renderer::Impl {
     gpu_->evict_staged();
   }
   const std::string& device() const { return device_; }
+  gl::Context& context() { return *context_; }
   const std::vector<PlannedPass>& passes() const { return passes_; }
   unsigned texture() const { return state_.targets.texture(Target::picture).name(); }
 
@@ -326,6 +327,7 @@ Image Renderer::shown_image() { return impl_->read_back(); }
 const std::vector<PlannedPass>& Renderer::passes() const { return impl_->passes(); }
 
 std::string Renderer::device() const { return impl_->device(); }
+gl::Context& Renderer::context() { return impl_->context(); }
 std::uint64_t Renderer::peak_gpu_bytes() const { return gl::memory_use().peak; }
 
 }  // namespace rebake

@@ -76,6 +76,7 @@ class Renderer {
   const std::vector<PlannedPass>& passes() const;
 
   std::string device() const;  ///< gl::device_name() of its context
+  gl::Context& context();      ///< for other drawing on the same device, while this object draws nothing
   /// Peak memory of all buffers and textures of this process, in bytes.
   std::uint64_t peak_gpu_bytes() const;
 

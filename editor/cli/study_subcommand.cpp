@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdio>
 #include <memory>
 
 #include "editor/cli/options.h"
@@ -20,6 +21,7 @@ void describe_study(SubcommandDescription& command) {
     std::vector<std::string> scenes;
     int frames = 9;
     DprtOptions dprt;
+    RepresentationsOptions representations;
     FolderOptions reading;
     ViewOptions view;
   };
@@ -47,6 +49,10 @@ void describe_study(SubcommandDescription& command) {
   command.flag("--cuda", options->dprt.cuda, "dprt: train on the graphics card");
   command.flag("--paper", options->dprt.paper,
                "dprt: the published sizes: side 256 (fish 512), 32 channels, 500 epochs");
+  command.flag("--quick", options->representations.quick, "representations: one scene at small sizes");
+  command.option("--snerg", options->representations.snerg, "representations: a SNeRG scene to measure too", "FOLDER");
+  command.option("--plenoctree", options->representations.plenoctree, "representations: a PlenOctree to measure too",
+                 "NPZ");
   options->view.add_to(command);
   options->reading.add_to(command);
   command.does([options] {
@@ -65,9 +71,13 @@ void describe_study(SubcommandDescription& command) {
         if (!renderer) renderer = std::make_unique<Renderer>();
         return *renderer;
       };
-      const StudyTable table =
-          study.run({on_demand, scene, options->view.view(scene), options->frames, progress_bar(), options->photographs,
-                     options->out, [](const std::string& line) { fmt::print("{}\n", line); }, options->dprt});
+      const StudyTable table = study.run({on_demand, scene, options->view.view(scene), options->frames, progress_bar(),
+                                          options->photographs, options->out,
+                                          [](const std::string& line) {
+                                            fmt::print("{}\n", line);
+                                            std::fflush(stdout);
+                                          },
+                                          options->dprt, options->representations});
       clear_progress_bar();
       std::size_t width = 6;
       for (const StudyTable::Row& row : table.rows) width = std::max(width, row.choice.size());

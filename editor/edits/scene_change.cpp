@@ -11,6 +11,10 @@ namespace rebake {
 
 namespace {
 
+bool same_selection(const Node& a, const Node& b) {
+  return a.selection == b.selection || (a.selection && b.selection && *a.selection == *b.selection);
+}
+
 std::size_t selected_of(const Node& node) { return node.selection ? count(*node.selection) : 0; }
 
 // Number of triangles with a corner elsewhere; 0 if the triangles of both objects do not correspond.
@@ -52,7 +56,7 @@ SceneChange change_between(const Scene& before, const Scene& after) {
     const auto found = now.find(old.id);
     const NodePtr node = found == now.end() ? nullptr : found->second;
     if (found != now.end()) now.erase(found);
-    if (node && node->object == old.object && node->selection == old.selection) continue;
+    if (node && node->object == old.object && same_selection(*node, old)) continue;
     change.names.push_back(old.name);
     change.selected_before += selected_of(old);
     if (old.object) change.triangles_before += old.object->triangle_count();

@@ -128,13 +128,20 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
     return std::isfinite(row.values[x]) && std::isfinite(row.values[table.y]);
   });
   if (rows.empty()) return;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const StudyTable::Row& row = rows[k];
+  std::size_t lines = 0, longest = 0;
+  for (std::size_t k = 0, next = 0; k < rows.size(); k = next) {
+    // Rows of one series that follow each other are one line.
+    for (next = k + 1; next < rows.size() && !rows[k].series.empty() && rows[next].series == rows[k].series;) ++next;
     // A logarithmic axis has no zero: exact values are drawn at its lower end.
     const auto drawn = [](double value, bool log) { return log ? std::max(value, 1e-17) : value; };
-    data += fmt::format("{} {}\n", drawn(row.values[x], table.log_x), drawn(row.values[table.y], table.log_y));
-    points += fmt::format("{}$rows every ::{}::{} using 1:2 with points pt {} ps 1.4 title {}", k == 0 ? "" : ", ", k,
-                          k, 4 + k, plotted(row.choice));
+    for (std::size_t each = k; each < next; ++each)
+      data += fmt::format("{} {}\n", drawn(rows[each].values[x], table.log_x),
+                          drawn(rows[each].values[table.y], table.log_y));
+    const std::string& name = rows[k].series.empty() ? rows[k].choice : rows[k].series;
+    points += fmt::format("{}$rows every ::{}::{} using 1:2 with {} pt {} ps 1.4 title {}", k == 0 ? "" : ", ", k,
+                          next - 1, rows[k].series.empty() ? "points" : "linespoints", 4 + lines, plotted(name));
+    ++lines;
+    longest = std::max(longest, name.size());
   }
   const std::string plot = fmt::format(
       "$rows << EOD\n{}EOD\nset title {}\nset xlabel {}\nset ylabel {}\n{}{}"
@@ -143,10 +150,8 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
       table.log_x ? "set logscale x\nset format x '10^{%L}'\n" : "",
       table.log_y ? "set logscale y\nset format y '10^{%L}'\n" : "");
   // The plot is as high as its legend. Its output comes through a pipe, so that no output path reaches gnuplot.
-  const std::size_t height = std::max<std::size_t>(440, 60 + 20 * table.rows.size());
+  const std::size_t height = std::max<std::size_t>(440, 60 + 20 * lines);
   // Longer names need a wider legend.
-  std::size_t longest = 0;
-  for (const StudyTable::Row& row : rows) longest = std::max(longest, row.choice.size());
   const std::size_t width = 860 + 8 * (std::max<std::size_t>(longest, 28) - 28);
   for (const auto& [terminal, extension] :
        {std::pair{fmt::format("svg size {},{} dynamic background rgb 'white'", width, height), "svg"},
@@ -166,13 +171,26 @@ void write_line_plot(const std::string& title, const std::string& x, const std::
     data += "EOD\n";
     drawn += fmt::format("{}$line{} using 1:2 with lines lw 2 title {}", k == 0 ? "" : ", ", k, plotted(lines[k].name));
   }
-  const std::string plot =
-      fmt::format("{}set title {}\nset xlabel {}\nset ylabel {}\n{}set grid\nset key outside right top\n", data,
-                  plotted(title), plotted(x), plotted(y), log_y ? "set logscale y\n" : "");
+  const std::string plot = fmt::format("{}set title {}\nset xlabel {}\nset ylabel {}\n{}set grid\nset key below\n",
+                                       data, plotted(title), plotted(x), plotted(y), log_y ? "set logscale y\n" : "");
   for (const auto& [terminal, extension] :
        {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
     write_file_atomically(base + "." + extension,
                           run_gnuplot(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, drawn)), {});
+}
+
+std::filesystem::path own_folder(const StudyInput& input, const std::string& study) {
+  const std::filesystem::path folder = input.folder / study, marker = folder / "study.json";
+  const std::string contents = fmt::format("{{\"software\": \"Rebake\", \"study\": \"{}\"}}\n", study);
+  std::error_code error;
+  if (std::filesystem::exists(folder, error) &&
+      (!std::filesystem::is_directory(folder, error) || !std::filesystem::is_empty(folder, error)) &&
+      (!std::filesystem::is_regular_file(marker, error) || read_file(marker) != contents))
+    throw FileError(folder, "exists and was not made by this study; choose another output folder");
+  std::filesystem::create_directories(folder, error);
+  if (error) throw FileError(folder, "cannot be created: " + error.message());
+  write_file_atomically(marker, contents, {});
+  return folder;
 }
 
 void prepare_study_folder(const Study& study, const std::filesystem::path& folder, const SourceGuard& guard) {

@@ -18,6 +18,7 @@ struct StudyTable {
   struct Row {
     std::string choice;
     std::vector<double> values;  ///< one per column; NaN if it does not apply
+    std::string series = {};     ///< rows of equal series are plotted as one line; empty: as a point
   };
   std::vector<std::string> columns;  ///< names with units
   std::vector<Row> rows;
@@ -38,6 +39,13 @@ struct DprtOptions {
   bool paper = false;  ///< the published sizes instead of `side`, `channels` and `epochs`
 };
 
+/// Options of the study of representations.
+struct RepresentationsOptions {
+  bool quick = false;      ///< one scene, smaller sizes
+  std::string snerg;       ///< folder of a SNeRG scene to measure too; empty: none
+  std::string plenoctree;  ///< file of a PlenOctree to measure too; empty: none
+};
+
 /// Input of a study.
 struct StudyInput {
   std::function<Renderer&()> renderer;  ///< created on first use; throws DeviceError without OpenGL
@@ -49,6 +57,7 @@ struct StudyInput {
   std::filesystem::path folder = {};  ///< for further files of the study
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< outputs a message of one line
   DprtOptions dprt = {};
+  RepresentationsOptions representations = {};
 };
 
 /// A subject of `rebake study`.
@@ -76,6 +85,7 @@ StudyTable study_filtering(const StudyInput& input);
 StudyTable study_publish(const StudyInput& input);
 StudyTable study_training(const StudyInput& input);
 StudyTable study_dprt(const StudyInput& input);
+StudyTable study_representations(const StudyInput& input);
 
 /// All studies, in the order of `rebake study --help`.
 inline constexpr Study study_table[] = {
@@ -97,6 +107,8 @@ inline constexpr Study study_table[] = {
     {"training", "training from photographs: steps, grid size, losses; time, size and error", study_training},
     {"dprt", "deep precomputed radiance transfer as published, against linear models, rotation and tracing",
      study_dprt},
+    {"representations", "MobileNeRF against SNeRG and PlenOctrees: time, memory, size and error, at three resolutions",
+     study_representations},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
 
@@ -126,6 +138,10 @@ struct PlottedLine {
 /// Writes BASE.svg and BASE.png. Throws FileError, and Error if gnuplot is missing. `log_y`: logarithmic.
 void write_line_plot(const std::string& title, const std::string& x, const std::string& y, bool log_y,
                      const std::vector<PlottedLine>& lines, const std::string& base);
+
+/// The folder for further files of a study, FOLDER/`study`, with a marker in it. Throws FileError if there is something
+/// of that name that the study did not make.
+std::filesystem::path own_folder(const StudyInput& input, const std::string& study);
 
 /// Creates the folder and checks all outputs, so that problems are found before the measurement. Throws FileError.
 void prepare_study_folder(const Study& study, const std::filesystem::path& folder, const SourceGuard& guard);

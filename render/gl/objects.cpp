@@ -123,6 +123,33 @@ Texture make_texture(unsigned internal_format, int width, int height, int bytes_
   return texture;
 }
 
+Texture make_volume(int channels, const std::array<int, 3>& size, const std::uint8_t* texels, bool linear) {
+  GLint largest = 0;
+  glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &largest);
+  if (size[0] > largest || size[1] > largest || size[2] > largest)
+    throw DeviceError(fmt::format("the driver supports 3-D textures up to {0}×{0}×{0} texels, {1}×{2}×{3} are needed",
+                                  largest, size[0], size[1], size[2]));
+  const GLenum format = channels == 1 ? GL_RED : channels == 3 ? GL_RGB : GL_RGBA;
+  const GLint internal_format = channels == 1 ? GL_R8 : channels == 3 ? GL_RGB8 : GL_RGBA8;
+  unsigned name = 0;
+  glGenTextures(1, &name);
+  glBindTexture(GL_TEXTURE_3D, name);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage3D(GL_TEXTURE_3D, 0, internal_format, size[0], size[1], size[2], 0, format, GL_UNSIGNED_BYTE, texels);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  for (const GLenum parameter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_3D, parameter, linear ? GL_LINEAR : GL_NEAREST);
+  for (const GLenum parameter : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T, GL_TEXTURE_WRAP_R})
+    glTexParameteri(GL_TEXTURE_3D, parameter, GL_CLAMP_TO_EDGE);
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAX_LEVEL, 0);
+  const std::uint64_t bytes = static_cast<std::uint64_t>(channels) * static_cast<std::uint64_t>(size[0]) *
+                              static_cast<std::uint64_t>(size[1]) * static_cast<std::uint64_t>(size[2]);
+  take(bytes);
+  Texture texture(name, bytes);
+  check_memory("volume");
+  return texture;
+}
+
 Texture make_buffer_texture(const Buffer& buffer, unsigned internal_format) {
   unsigned name = 0;
   glGenTextures(1, &name);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -68,6 +69,9 @@ Buffer make_buffer(unsigned target, const void* data, std::size_t bytes);
 /// Creates a 2-D texture without mipmaps, clamped to its edges, with linear filtering for GL_RGBA8 and nearest sampling
 /// for other formats. Throws DeviceError if it is too large or memory is out.
 Texture make_texture(unsigned internal_format, int width, int height, int bytes_per_texel);
+/// Creates a 3-D texture with 1, 3 or 4 channels of bytes, clamped to its edges; `texels` with x fastest, then y.
+/// `linear`: filtered trilinearly, otherwise nearest. Throws DeviceError if it is too large or memory is out.
+Texture make_volume(int channels, const std::array<int, 3>& size, const std::uint8_t* texels, bool linear);
 /// Creates a buffer texture that reads `buffer` in a format such as GL_RGBA32F.
 Texture make_buffer_texture(const Buffer& buffer, unsigned internal_format);
 /// Creates a framebuffer; `depth` may be null. Throws DeviceError if the driver does not support these attachments.

@@ -10,8 +10,6 @@ namespace rebake::bakery {
 
 namespace {
 
-constexpr int cell = 17;  // side of a quad's patch in texels
-
 struct TexelSite {
   std::size_t patch;
   double u, v;
@@ -27,7 +25,7 @@ struct Quad {
   std::vector<TexelSite> texels;
 };
 
-std::vector<Quad> quads_of(const Model& model) {
+std::vector<Quad> quads_of(const Model& model, int cell) {
   std::vector<Quad> quads;
   for (std::size_t p = 0; p < model.patches.size(); ++p) {
     const Patch& patch = model.patches[p];
@@ -93,7 +91,8 @@ FitProblem fit_problem(const Model& model, const RadianceField& field, const std
 
 std::shared_ptr<const BakedObject> bake(const Model& model, const RadianceField& field, const BakeOptions& options,
                                         const Progress& progress) {
-  const std::vector<Quad> quads = quads_of(model);
+  const int cell = options.texels_per_side;
+  const std::vector<Quad> quads = quads_of(model, cell);
   const int per_row = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(quads.size())))));
   const int width = per_row * cell, height = (static_cast<int>(quads.size()) + per_row - 1) / per_row * cell;
 

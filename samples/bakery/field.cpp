@@ -194,6 +194,25 @@ class RadianceField::Impl {
     return ray.tfar < 0;
   }
 
+  std::optional<Hit> hit(const Vec3& eye, const Vec3& direction) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query{};
+    query.ray.org_x = static_cast<float>(eye.x()), query.ray.org_y = static_cast<float>(eye.y()),
+    query.ray.org_z = static_cast<float>(eye.z());
+    query.ray.dir_x = static_cast<float>(direction.x()), query.ray.dir_y = static_cast<float>(direction.y()),
+    query.ray.dir_z = static_cast<float>(direction.z());
+    query.ray.tfar = std::numeric_limits<float>::infinity();
+    query.ray.mask = ~0U;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene_, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    const PatchUv at = uv_of(grids_[query.hit.geomID], query.hit.primID, static_cast<double>(query.hit.u),
+                             static_cast<double>(query.hit.v));
+    return Hit{query.hit.geomID, std::clamp(at.u, 0.0, 1.0), std::clamp(at.v, 0.0, 1.0),
+               static_cast<double>(query.ray.tfar)};
+  }
+
   bool visible(const Vec3& eye, std::size_t k, double u, double v) const {
     const Vec3 p = model_.patches[k].point(u, v), way = p - eye;
     const double distance = way.norm();
@@ -213,24 +232,8 @@ class RadianceField::Impl {
           const double sx = (x + (s % side + 0.5) / side) / width * 2 - 1,
                        sy = 1 - (y + (s / side + 0.5) / side) / height * 2;
           const Vec3 d = (to_world * Vec3(sx * tan_half * width / height, sy * tan_half, -1)).normalized();
-          RTCIntersectContext context;
-          rtcInitIntersectContext(&context);
-          RTCRayHit query{};
-          query.ray.org_x = static_cast<float>(camera.eye.x()), query.ray.org_y = static_cast<float>(camera.eye.y()),
-          query.ray.org_z = static_cast<float>(camera.eye.z());
-          query.ray.dir_x = static_cast<float>(d.x()), query.ray.dir_y = static_cast<float>(d.y()),
-          query.ray.dir_z = static_cast<float>(d.z());
-          query.ray.tfar = std::numeric_limits<float>::infinity();
-          query.ray.mask = ~0U;
-          query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-          rtcIntersect1(scene_, &context, &query);
-          if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-            sum += Vec3::Ones();
-            continue;
-          }
-          const PatchUv at = uv_of(grids_[query.hit.geomID], query.hit.primID, static_cast<double>(query.hit.u),
-                                   static_cast<double>(query.hit.v));
-          sum += shade(query.hit.geomID, std::clamp(at.u, 0.0, 1.0), std::clamp(at.v, 0.0, 1.0), d);
+          const std::optional<Hit> found = hit(camera.eye, d);
+          sum += found ? shade(found->patch, found->u, found->v, d) : Color(Color::Ones());
         }
         for (int c = 0; c < 3; ++c)
           image.rgb[static_cast<std::size_t>((y * width + x) * 3 + c)] =
@@ -290,6 +293,9 @@ Vec3 RadianceField::irradiance(std::size_t patch, double u, double v) const {
 }
 bool RadianceField::visible(const Vec3& eye, std::size_t patch, double u, double v) const {
   return impl_->visible(eye, patch, u, v);
+}
+std::optional<RadianceField::Hit> RadianceField::hit(const Vec3& eye, const Vec3& direction) const {
+  return impl_->hit(eye, direction);
 }
 double RadianceField::ray_offset() const { return impl_->ray_offset(); }
 Image RadianceField::trace(const Camera& camera, int width, int height) const {

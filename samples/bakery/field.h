@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "render/graph/render_view.h"
@@ -33,6 +34,13 @@ class RadianceField {
   Vec3 irradiance(std::size_t patch, double u, double v) const;
   /// Whether nothing opaque is between the eye and a patch's point.
   bool visible(const Vec3& eye, std::size_t patch, double u, double v) const;
+  struct Hit {
+    std::size_t patch;
+    double u, v;
+    double distance;
+  };
+  /// Nearest opaque point along a ray of unit direction; nothing if there is none.
+  std::optional<Hit> hit(const Vec3& eye, const Vec3& direction) const;
   /// Ray-traced picture with 64 rays per pixel, composited over white in display colours, as the format's rendering
   /// rule does.
   Image trace(const Camera& camera, int width, int height) const;

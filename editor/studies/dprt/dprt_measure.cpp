@@ -55,19 +55,6 @@ double percent_off(const DprtMethod& method, const std::vector<TestFrame>& tests
   return 100 * std::sqrt(off / all);
 }
 
-fs::path own_folder(const StudyInput& input) {
-  const fs::path folder = input.folder / "dprt", marker = folder / "study.json";
-  const std::string contents = "{\"software\": \"Rebake\", \"study\": \"dprt\"}\n";
-  std::error_code error;
-  if (fs::exists(folder, error) && (!fs::is_directory(folder, error) || !fs::is_empty(folder, error)) &&
-      (!fs::is_regular_file(marker, error) || read_file(marker) != contents))
-    throw FileError(folder, "exists and was not made by this study; choose another output folder");
-  fs::create_directories(folder, error);
-  if (error) throw FileError(folder, "cannot be created: " + error.message());
-  write_file_atomically(marker, contents, {});
-  return folder;
-}
-
 void say_layout(const StudyInput& input, const std::string& name, const TracedFrames& traced) {
   input.say(fmt::format("{}: {} frames of {}² texels, laid out by {} weights, {:.0f} % of the surface undersampled",
                         name, traced.frames.size(), traced.side, traced.mean_value ? "mean value" : "harmonic",
@@ -83,9 +70,10 @@ std::optional<DprtMethod> add_learned_methods(const StudyInput& input, const Dpr
     return {};
   }
   // Checkpoints of other data have other names.
-  const std::string base = (own_folder(input) / fmt::format("{}-{}-{}-{}-{:08x}", name, options.side, options.channels,
-                                                            options.epochs, traced.hash & 0xFFFFFFFFU))
-                               .string();
+  const std::string base =
+      (own_folder(input, "dprt") / fmt::format("{}-{}-{}-{}-{:08x}", name, options.side, options.channels,
+                                               options.epochs, traced.hash & 0xFFFFFFFFU))
+          .string();
   DprtCurve curve;
   const DprtMethod published = published_network(traced, options, base, curve, input.progress);
   methods.push_back(published);
@@ -97,7 +85,7 @@ std::optional<DprtMethod> add_learned_methods(const StudyInput& input, const Dpr
   }
   if (curve.size() > 1) try {
       write_line_plot(name + fmt::format(", {}² texels, {} channels", options.side, options.channels), "epoch",
-                      "L1 loss", true, {training, held_out}, (own_folder(input) / (name + "-curve")).string());
+                      "L1 loss", true, {training, held_out}, (own_folder(input, "dprt") / (name + "-curve")).string());
     } catch (const Error& error) {
       input.say(fmt::format("warning: the learning curve was not plotted: {}", error.what()));
     }

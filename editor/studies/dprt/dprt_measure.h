@@ -26,9 +26,6 @@ double milliseconds_of(const DprtMethod& method, const TracedFrames& traced, con
 /// Root mean square error over the coefficients of all texels and poses, in percent of their root mean square.
 double percent_off(const DprtMethod& method, const std::vector<TestFrame>& tests, const Progress& progress);
 
-/// The folder dprt in the output folder, for traces, checkpoints, networks, curves and pictures; created. Throws
-/// FileError if it exists and another program made it.
-std::filesystem::path own_folder(const StudyInput& input);
 /// Says how the object was laid out.
 void say_layout(const StudyInput& input, const std::string& name, const TracedFrames& traced);
 

@@ -56,7 +56,7 @@ DprtOptions sizes_of(const DprtOptions& wanted, const std::string& object) {
 void study_object(const StudyInput& input, const std::string& name, StudyTable& table) {
   const DprtOptions options = sizes_of(input.dprt, name);
   const AnimatedObject object = object_named(name, input);
-  const fs::path own = own_folder(input);
+  const fs::path own = own_folder(input, "dprt");
   const TracedFrames traced = traced_frames(object, options.side, training_rays,
                                             own / (object.name + fmt::format("-{}", options.side)), input.progress);
   say_layout(input, object.name, traced);

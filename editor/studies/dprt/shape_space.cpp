@@ -73,7 +73,7 @@ void write_sweep(const StudyInput& input, const Sweep& sweep, const std::vector<
     }
     csv += "\n";
   }
-  const std::string base = (own_folder(input) / sweep.file).string();
+  const std::string base = (own_folder(input, "dprt") / sweep.file).string();
   write_file_atomically(base + ".csv", csv, {});
   try {
     write_line_plot(sweep.title, sweep.x, "error %", false, lines, base);
@@ -86,8 +86,9 @@ void write_sweep(const StudyInput& input, const Sweep& sweep, const std::vector<
 
 void study_shape_space(const StudyInput& input, const DprtOptions& options, StudyTable& table) {
   const AnimatedObject object = random_shapes();
-  const TracedFrames traced = traced_frames(object, options.side, training_rays,
-                                            own_folder(input) / fmt::format("space-{}", options.side), input.progress);
+  const TracedFrames traced =
+      traced_frames(object, options.side, training_rays,
+                    own_folder(input, "dprt") / fmt::format("space-{}", options.side), input.progress);
   say_layout(input, object.name, traced);
   const GeometryImage image(disk_chart(object.rest), options.side);
   const auto test = [&](const Weights& expression, double head) {

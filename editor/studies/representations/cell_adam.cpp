@@ -1,0 +1,52 @@
+#include "editor/studies/representations/cell_adam.h"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+
+namespace rebake {
+
+CellAdam::CellAdam(std::size_t cells, std::vector<float> rates)
+    : channels_(rates.size()),
+      rates_(std::move(rates)),
+      values_(cells * channels_),
+      mean_(cells * channels_),
+      square_(cells * channels_) {
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    gradients_[lane].resize(cells * channels_);
+    touched_[lane].resize(cells);
+  }
+}
+
+void CellAdam::step(std::size_t batch, double rate_scale, const std::function<void(float*)>& bound) {
+  constexpr float first = 0.9F, second = 0.99F, least = 1e-8F;
+  ++steps_;
+  const float mean_scale = 1 / (1 - std::pow(first, static_cast<float>(steps_))),
+              square_scale = 1 / (1 - std::pow(second, static_cast<float>(steps_))),
+              share = 1 / static_cast<float>(batch), rate_factor = static_cast<float>(rate_scale);
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, touched_[0].size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t cell = range.begin(); cell < range.end(); ++cell) {
+          bool any = false;
+          for (auto& lane : touched_) any = any || lane[cell] != 0;
+          if (!any) continue;
+          for (std::size_t c = 0; c < channels_; ++c) {
+            const std::size_t k = cell * channels_ + c;
+            float gradient = 0;
+            for (std::size_t lane = 0; lane < lanes; ++lane) {
+              gradient += gradients_[lane][k];
+              gradients_[lane][k] = 0;
+            }
+            gradient *= share;
+            mean_[k] += (1 - first) * (gradient - mean_[k]);
+            square_[k] += (1 - second) * (gradient * gradient - square_[k]);
+            values_[k] -=
+                rate_factor * rates_[c] * mean_[k] * mean_scale / (std::sqrt(square_[k] * square_scale) + least);
+          }
+          for (auto& lane : touched_) lane[cell] = 0;
+          bound(&values_[cell * channels_]);
+        }
+      });
+}
+
+}  // namespace rebake

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace rebake {
+
+/// Adam (Kingma and Ba 2015) on values per cell, of which each step changes only the cells that a batch touches. A
+/// batch is divided among `lanes` parts with gradients of their own, so that results do not depend on the number of
+/// threads.
+class CellAdam {
+ public:
+  static constexpr std::size_t lanes = 4;
+
+  /// `rates`: learning rate of each channel.
+  CellAdam(std::size_t cells, std::vector<float> rates);
+
+  float* values(std::size_t cell) { return &values_[cell * channels_]; }
+  const float* values(std::size_t cell) const { return &values_[cell * channels_]; }
+  /// Gradient of a cell in a lane, to be added to; marks the cell as touched.
+  float* gradient(std::size_t lane, std::size_t cell) {
+    touched_[lane][cell] = 1;
+    return &gradients_[lane][cell * channels_];
+  }
+  /// A step with the mean gradient of `batch` rays; clears gradients. `bound` limits the values of a cell afterwards.
+  void step(std::size_t batch, double rate_scale, const std::function<void(float* values)>& bound);
+
+ private:
+  std::size_t channels_;
+  std::vector<float> rates_, values_, mean_, square_;
+  std::array<std::vector<float>, lanes> gradients_;
+  std::array<std::vector<std::uint8_t>, lanes> touched_;
+  int steps_ = 0;
+};
+
+}  // namespace rebake
