@@ -22,6 +22,7 @@ void describe_study(SubcommandDescription& command) {
     int frames = 9;
     DprtOptions dprt;
     RepresentationsOptions representations;
+    bool quick = false;
     FolderOptions reading;
     ViewOptions view;
   };
@@ -49,7 +50,7 @@ void describe_study(SubcommandDescription& command) {
   command.flag("--cuda", options->dprt.cuda, "dprt: train on the graphics card");
   command.flag("--paper", options->dprt.paper,
                "dprt: the published sizes: side 256 (fish 512), 32 channels, 500 epochs");
-  command.flag("--quick", options->representations.quick, "representations: one scene at small sizes");
+  command.flag("--quick", options->quick, "representations, limits: small sizes, to try it");
   command.option("--snerg", options->representations.snerg, "representations: a SNeRG scene to measure too", "FOLDER");
   command.option("--plenoctree", options->representations.plenoctree, "representations: a PlenOctree to measure too",
                  "NPZ");
@@ -77,7 +78,7 @@ void describe_study(SubcommandDescription& command) {
                                             fmt::print("{}\n", line);
                                             std::fflush(stdout);
                                           },
-                                          options->dprt, options->representations});
+                                          options->dprt, options->representations, options->quick});
       clear_progress_bar();
       std::size_t width = 6;
       for (const StudyTable::Row& row : table.rows) width = std::max(width, row.choice.size());

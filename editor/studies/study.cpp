@@ -173,10 +173,20 @@ void write_line_plot(const std::string& title, const std::string& x, const std::
   }
   const std::string plot = fmt::format("{}set title {}\nset xlabel {}\nset ylabel {}\n{}set grid\nset key below\n",
                                        data, plotted(title), plotted(x), plotted(y), log_y ? "set logscale y\n" : "");
+  // The legend is below the plot, in as many columns as fit.
+  std::size_t longest = 0;
+  for (const PlottedLine& line : lines) longest = std::max(longest, line.name.size());
+  constexpr std::size_t width = 860, plot_height = 440;
+  const std::size_t columns =
+      std::clamp<std::size_t>(width / (8 * longest + 60), 1, std::max<std::size_t>(lines.size(), 1));
+  const std::size_t height = plot_height + 20 * ((lines.size() + columns - 1) / columns);
   for (const auto& [terminal, extension] :
-       {std::pair{"svg size 860,440 dynamic background rgb 'white'", "svg"}, std::pair{"pngcairo size 860,440", "png"}})
+       {std::pair{fmt::format("svg size {},{} dynamic background rgb 'white'", width, height), "svg"},
+        std::pair{fmt::format("pngcairo size {},{}", width, height), "png"}})
     write_file_atomically(base + "." + extension,
-                          run_gnuplot(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, drawn)), {});
+                          run_gnuplot(fmt::format("{}set key below maxcols {}\nset terminal {}\nplot {}\n", plot,
+                                                  columns, terminal, drawn)),
+                          {});
 }
 
 std::filesystem::path own_folder(const StudyInput& input, const std::string& study) {

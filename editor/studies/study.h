@@ -41,7 +41,6 @@ struct DprtOptions {
 
 /// Options of the study of representations.
 struct RepresentationsOptions {
-  bool quick = false;      ///< one scene, smaller sizes
   std::string snerg;       ///< folder of a SNeRG scene to measure too; empty: none
   std::string plenoctree;  ///< file of a PlenOctree to measure too; empty: none
 };
@@ -58,6 +57,7 @@ struct StudyInput {
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< outputs a message of one line
   DprtOptions dprt = {};
   RepresentationsOptions representations = {};
+  bool quick = false;  ///< smaller sizes, for studies that take long
 };
 
 /// A subject of `rebake study`.
@@ -86,6 +86,7 @@ StudyTable study_publish(const StudyInput& input);
 StudyTable study_training(const StudyInput& input);
 StudyTable study_dprt(const StudyInput& input);
 StudyTable study_representations(const StudyInput& input);
+StudyTable study_limits(const StudyInput& input);
 
 /// All studies, in the order of `rebake study --help`.
 inline constexpr Study study_table[] = {
@@ -109,6 +110,7 @@ inline constexpr Study study_table[] = {
      study_dprt},
     {"representations", "MobileNeRF against SNeRG and PlenOctrees: time, memory, size and error, at three resolutions",
      study_representations},
+    {"limits", "MobileNeRF's limits: close-ups, semi-transparent parts, surfaces seen from the side", study_limits},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
 

@@ -87,19 +87,18 @@ void PixelProgram::draw(int width, int height) {
   glFinish();
 }
 
-Image PixelProgram::picture() const {
-  Image image{width_, height_, {}, {}};
-  std::vector<std::uint8_t> rgba(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
+std::vector<std::uint8_t> PixelProgram::picture() const {
+  std::vector<std::uint8_t> rgb, rgba(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
   glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  image.rgb.reserve(rgba.size() / 4 * 3);
+  rgb.reserve(rgba.size() / 4 * 3);
   for (int y = height_ - 1; y >= 0; --y)
     for (int x = 0; x < width_; ++x) {
       const std::size_t at =
           4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
-      image.rgb.insert(image.rgb.end(), {rgba[at], rgba[at + 1], rgba[at + 2]});
+      rgb.insert(rgb.end(), {rgba[at], rgba[at + 1], rgba[at + 2]});
     }
-  return image;
+  return rgb;
 }
 
 }  // namespace rebake::gl

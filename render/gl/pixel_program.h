@@ -8,7 +8,6 @@
 
 #include "mesh_ops/base/types.h"
 #include "render/gl/objects.h"
-#include "render/image.h"
 
 namespace rebake::gl {
 
@@ -39,8 +38,8 @@ class PixelProgram {
 
   /// Draws a picture of this size and waits until it is done. The shader writes RGBA into its only output.
   void draw(int width, int height);
-  /// Reads back the picture that was drawn last.
-  Image picture() const;
+  /// Reads back the picture that was drawn last: RGB of each pixel, row by row from the top.
+  std::vector<std::uint8_t> picture() const;
 
  private:
   struct Input {

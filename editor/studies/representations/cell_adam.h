@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -7,6 +8,9 @@
 #include <vector>
 
 namespace rebake {
+
+/// Rays per step: few for small sets, so that a pass has about 64 steps or more.
+inline std::size_t batch_size(std::size_t rays) { return std::clamp<std::size_t>(rays / 64, 256, 8192); }
 
 /// Adam (Kingma and Ba 2015) on values per cell, of which each step changes only the cells that a batch touches. A
 /// batch is divided among `lanes` parts with gradients of their own, so that results do not depend on the number of

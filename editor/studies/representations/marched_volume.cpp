@@ -148,7 +148,7 @@ Image MarchedVolume::picture(const View& view) {
   const gl::CurrentContextScope current(context_);
   aim(view);
   program_->draw(view.width, view.height);
-  return program_->picture();
+  return {view.width, view.height, program_->picture(), {}};
 }
 
 double MarchedVolume::draw(const View& view) {

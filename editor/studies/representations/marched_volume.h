@@ -8,6 +8,7 @@
 #include "render/gl/context.h"
 #include "render/gl/pixel_program.h"
 #include "render/graph/render_view.h"
+#include "render/image.h"
 
 namespace rebake {
 

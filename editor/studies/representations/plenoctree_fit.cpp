@@ -12,7 +12,6 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t batch = 16384;
 constexpr std::size_t basis = 9, channels = 3 * basis + 1, density = 3 * basis;
 constexpr float darkest = 0.01F;  // light at which a ray ends
 constexpr int margin = 1;
@@ -37,6 +36,7 @@ class Fit {
   }
 
   void pass(int number, const Progress& progress) {
+    const std::size_t batch = batch_size(rays_.rays.size());
     for (std::size_t begin = 0; begin < rays_.rays.size(); begin += batch) {
       progress.at("fitting a PlenOctree", static_cast<double>(begin) / static_cast<double>(rays_.rays.size()));
       const std::size_t end = std::min(begin + batch, rays_.rays.size());

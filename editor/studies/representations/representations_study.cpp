@@ -202,9 +202,9 @@ class Run {
   std::vector<PlottedLine> curves_;
 };
 
-RepresentationSizes sizes_of(const RepresentationsOptions& options) {
+RepresentationSizes sizes_of(bool quick) {
   RepresentationSizes sizes;
-  if (options.quick) {
+  if (quick) {
     sizes.samples = {"ficus"};
     sizes.resolutions = {32, 64};
     sizes.texels = {5, 9};
@@ -233,13 +233,13 @@ StudyTable study_representations(const StudyInput& input) {
                    false,
                    2};
   const RepresentationsOptions& options = input.representations;
-  const RepresentationSizes sizes = sizes_of(options);
+  const RepresentationSizes sizes = sizes_of(input.quick);
   input.say("driver: " + input.renderer().device());
-  input.say(options.quick ? "one scene at small sizes: about 3 minutes on two cores"
-                          : "four scenes, three methods, three resolutions: about 1 hour on two cores; what is fitted "
-                            "stays in the output folder, so the study can be stopped and started again");
+  input.say(input.quick ? "one scene at small sizes: about 3 minutes on two cores"
+                        : "four scenes, three methods, three resolutions: about 1 hour on two cores; what is fitted "
+                          "stays in the output folder, so the study can be stopped and started again");
   // Files that were given are read first, so that faults in them show at once.
-  const fs::path own = own_folder(input, options.quick ? "representations-quick" : "representations");
+  const fs::path own = own_folder(input, input.quick ? "representations-quick" : "representations");
   Run run(input, sizes, table);
   Drawer drawer(input);
   if (!options.snerg.empty()) {

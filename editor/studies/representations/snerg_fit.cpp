@@ -15,7 +15,6 @@ namespace rebake {
 
 namespace {
 
-constexpr std::size_t batch = 16384;
 constexpr float darkest = 1.0F / 255;  // light at which a ray ends
 constexpr int margin = 2;
 using Values = SnergValues;
@@ -33,7 +32,7 @@ class Fit {
   Fit(const TruthRays& rays, int resolution)
       : rays_(rays),
         cells_(cells_around(rays.hits, resolution, margin, false)),
-        adam_(cells_.count(), std::vector<float>(snerg_channels, 0.02F)),
+        adam_(cells_.count(), std::vector<float>(snerg_channels, 0.01F)),
         most_seen_(cells_.count(), 0) {
     std::mt19937 random(1);
     for (std::size_t cell = 0; cell < cells_.count(); ++cell) {
@@ -47,6 +46,7 @@ class Fit {
   }
 
   void pass(int number, const Progress& progress) {
+    const std::size_t batch = batch_size(rays_.rays.size());
     for (std::size_t begin = 0; begin < rays_.rays.size(); begin += batch) {
       progress.at("fitting a SNeRG grid", static_cast<double>(begin) / static_cast<double>(rays_.rays.size()));
       const std::size_t end = std::min(begin + batch, rays_.rays.size());
