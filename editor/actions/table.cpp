@@ -6,6 +6,9 @@
   X(FilmAction)               \
   X(ComparePhotographsAction) \
   X(TrainAction)              \
+  X(TrainLightAction)         \
+  X(UseLightModelAction)      \
+  X(ForgetLightModelAction)   \
   X(ExportAction) X(PublishAction) X(SaveAction) X(SaveProjectAction) X(ExportViewsAction) X(UndoAction) X(RedoAction)
 
 namespace rebake {

@@ -75,6 +75,7 @@ REBAKE_CODEC(WorldUp);
 REBAKE_CODEC(CaptureKind);
 REBAKE_CODEC(FuseWidth);
 REBAKE_CODEC(FuseMethod);
+REBAKE_CODEC(PosingEdits);
 REBAKE_CODEC(std::vector<std::string>);
 REBAKE_CODEC(std::vector<int>);
 REBAKE_CODEC(SelectMode);

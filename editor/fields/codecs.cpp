@@ -405,6 +405,24 @@ FieldType Codec<FuseMethod>::type() { return type_of(fuse_method_words()); }
 FuseMethod Codec<FuseMethod>::read(const json& value, const Scene&) { return read_word(value, fuse_method_words()); }
 json Codec<FuseMethod>::write(const FuseMethod& value) { return write_word(value, fuse_method_words()); }
 
+FieldType Codec<PosingEdits>::type() { return {FieldKind::other, "[{\"op\": …}, …]", "Sequence[dict[str, Any]]", {}}; }
+PosingEdits Codec<PosingEdits>::read(const json& value, const Scene&) {
+  const char* const expected =
+      "must be a list of edits, such as [{\"op\": \"bend\", \"degrees\": 60, \"axis\": [0, 1, 0]}]";
+  if (!value.is_array() || value.empty()) throw Error(expected);
+  PosingEdits edits;
+  for (const json& line : value) {
+    if (!line.is_object()) throw Error(expected);
+    edits.lines.push_back(line.dump());
+  }
+  return edits;
+}
+json Codec<PosingEdits>::write(const PosingEdits& value) {
+  json list = json::array();
+  for (const std::string& line : value.lines) list.push_back(json::parse(line));
+  return list;
+}
+
 FieldType Codec<std::vector<std::string>>::type() { return {FieldKind::names, "list of names", "Sequence[str]", {}}; }
 std::vector<std::string> Codec<std::vector<std::string>>::read(const json& value, const Scene& scene) {
   if (!value.is_array()) throw Error("must be a list of names");

@@ -80,6 +80,11 @@ struct CameraFormatName {
   std::string name;
 };
 
+/// Edits that move an object, each as the JSON text of a line of a script.
+struct PosingEdits {
+  std::vector<std::string> lines;
+};
+
 /// Width of a fused decoder's hidden layers; nothing: chosen automatically.
 struct FuseWidth {
   std::optional<int> neurons;

@@ -10,10 +10,13 @@
 #include "editor/actions/compare_photographs.h"
 #include "editor/actions/export_action.h"
 #include "editor/actions/film_action.h"
+#include "editor/actions/forget_light_model.h"
 #include "editor/actions/lit.h"
 #include "editor/actions/publish_action.h"
 #include "editor/actions/render_action.h"
 #include "editor/actions/save.h"
+#include "editor/actions/train_light.h"
+#include "editor/actions/use_light_model.h"
 #include "editor/actions/views.h"
 #include "editor/document/replaced_work.h"
 #include "editor/edits/support.h"
@@ -174,6 +177,9 @@ void add_edit_methods(py::class_<PyDocument>& type) {
   type.def("_edit", &edit_with);
   type.def("_export", &export_with);
   type.def("_publish", &written_with<PublishAction>);
+  type.def("_train_light", &written_with<TrainLightAction>);
+  type.def("_use_light_model", &written_with<UseLightModelAction>);
+  type.def("_forget_light_model", &written_with<ForgetLightModelAction>);
   type.def("_write_picture", &written_with<RenderAction>);
   type.def("_film", &written_with<FilmAction>);
   type.def("_compare_photographs", &written_with<ComparePhotographsAction>);

@@ -188,6 +188,28 @@ class Document:
         gain: first bring each picture to the exposure and white balance of its photograph
         min_psnr: required mean PSNR in dB; exit code 4 below it
         """
+    def train_light(self, node: Node | None = None, edits: Sequence[dict[str, Any]] | None = None, poses: int = 200, rays: int = 128, way: str = "linear", channels: int = 8, coarseness: float = 0.03, out: str | PathLike[str] = "") -> list[str]:
+        """Trains a model of an object's light transfer, for shading while it is dragged; returns its facts.
+
+        node: the object; default: the only one
+        edits: edits that move the object; poses scale their strength by -1 to 1; default: its deformations in the history
+        poses: number of poses, 8 to 2000
+        rays: rays per site, 16 to 16384
+        way: linear in the pose, or net: a U-Net on a geometry image (needs LibTorch)
+        channels: net: channels of the first layer, a multiple of 8 up to 64
+        coarseness: net: coarseness of the proxy body relative to the object's diagonal
+        out: also write the model to this file
+        """
+    def use_light_model(self, model: str | PathLike[str]) -> list[str]:
+        """Makes drags of an object use a trained model; returns its facts.
+
+        model: file that train_light wrote
+        """
+    def forget_light_model(self, node: Node | None = None) -> list[str]:
+        """Makes drags of an object use rotated light transfer again; returns notes.
+
+        node: the object; default: the only one
+        """
     def import_(self, *, path: str, as_: str = "", axes: Literal["360", "forward"] = "360", half_direction: bool | None = None, direction_first: bool | None = None, bgr: bool | None = None, alpha: Literal["halved", "plain"] | None = None, no_holes: bool | None = None, linear: int | None = None, ground: bool = False, content: str = "") -> None:
         """Reads a scene or a textured mesh into the scene.
 

@@ -7,8 +7,11 @@
 #include "editor/actions/compare_photographs.h"
 #include "editor/actions/export_action.h"
 #include "editor/actions/film_action.h"
+#include "editor/actions/forget_light_model.h"
 #include "editor/actions/publish_action.h"
 #include "editor/actions/render_action.h"
+#include "editor/actions/train_light.h"
+#include "editor/actions/use_light_model.h"
 #include "editor/edits/edit.h"
 #include "editor/fields/field_info.h"
 
@@ -208,7 +211,7 @@ template <class T>
 Method action_method(const char* name, const char* help) {
   Method method{name, help, "list[str]", action_type<T>().fields(), true};
   for (FieldInfo& field : method.fields)
-    if (field.name == "out") field.type.python = "str | PathLike[str]";
+    if (field.name == "out" || field.name == "model") field.type.python = "str | PathLike[str]";
   return method;
 }
 
@@ -227,7 +230,17 @@ std::vector<std::pair<Method, std::string>> writing_methods() {
        "_film"},
       {action_method<ComparePhotographsAction>(
            "compare_photographs", "Compares the scene with photographs: PSNR, SSIM and FLIP of each; returns notes."),
-       "_compare_photographs"}};
+       "_compare_photographs"},
+      {action_method<TrainLightAction>(
+           "train_light",
+           "Trains a model of an object's light transfer, for shading while it is dragged; returns its facts."),
+       "_train_light"},
+      {action_method<UseLightModelAction>("use_light_model",
+                                          "Makes drags of an object use a trained model; returns its facts."),
+       "_use_light_model"},
+      {action_method<ForgetLightModelAction>(
+           "forget_light_model", "Makes drags of an object use rotated light transfer again; returns notes."),
+       "_forget_light_model"}};
 }
 
 }  // namespace

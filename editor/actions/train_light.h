@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "editor/actions/action.h"
+#include "editor/actions/session.h"
+#include "editor/fields/values.h"
+
+namespace rebake {
+
+/// Trains a model of an object's light transfer, which shades drags of it. The scene stays as it is.
+struct TrainLightAction {
+  static constexpr const char* op = "train_light";
+  std::optional<NodeRef> node;       ///< nothing: the only object
+  std::optional<PosingEdits> edits;  ///< nothing: the deformations of the object in the history
+  int poses = 200, rays = 128;
+  std::string way = "linear";  ///< linear or net
+  int channels = 8;            ///< net: of the first layer
+  double coarseness = 0.03;    ///< net: of the proxy body, a share of the object's diagonal
+  std::string out;             ///< also write the model to this file
+
+  /// Files that the edits read.
+  static std::vector<std::filesystem::path> input_files(const nlohmann::json& object);
+};
+template <>
+const ActionType& action_type<TrainLightAction>();
+template <>
+TrainLightAction read_action<TrainLightAction>(const nlohmann::json& object, const Scene& scene);
+
+/// Throws FieldError, FileError, and Error for objects without drag light; see trained_light_model().
+void run(Session& session, const TrainLightAction& action);
+
+}  // namespace rebake
