@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "editor/document/journal.h"
@@ -22,6 +23,16 @@ bool holds_project(const fs::path& path) {
 }
 
 namespace {
+
+// Whether a file that has not the extension of projects is one, for example a link to it. Only files that begin as JSON
+// are read as a whole.
+bool is_project_by_another_name(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
+  std::ifstream in(path, std::ios::binary);
+  char first = 0;
+  return (in >> std::ws).get(first) && first == '{' && holds_project(path);
+}
 
 // The folder's path without an ending such as _4, which nerfstudio gives to folders of smaller photographs.
 std::string without_scale(const fs::path& folder) {
@@ -60,8 +71,7 @@ void refuse_replacing_film(const fs::path& path) {
 void refuse_replacing_work(const fs::path& path) {
   Journal::refuse_overwriting(path);
   refuse_replacing_film(path);
-  // Reading large pictures only to look for a project would be slow; projects have their extension.
-  if (is_project_file(path) && holds_project(path))
+  if (is_project_file(path) ? holds_project(path) : is_project_by_another_name(path))
     throw FileError(path, "is a project, whose edits would be lost; name another file");
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return;

@@ -20,10 +20,19 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double seconds_between_checkpoints = 60;
-constexpr const char *file_prefix = "rebake-", *checkpoint_name = "rebake-checkpoint",
-                     *preview_name = "rebake-preview.png", *table_name = "rebake-progress.csv",
-                     *lock_name = "rebake-lock";
+constexpr const char *checkpoint_name = "rebake-checkpoint", *preview_name = "rebake-preview.png",
+                     *table_name = "rebake-progress.csv", *lock_name = "rebake-lock";
 constexpr int preview_side = 96;  // pixels at most: it must take less than a second
+
+// Whether an entry of a work folder is a file that a training made there: by its name, and no link to another file.
+bool is_own(const fs::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  std::error_code error;
+  if (entry.is_symlink(error) || (entry.is_regular_file(error) && entry.hard_link_count(error) > 1)) return false;
+  const char* const own[] = {checkpoint_name, preview_name, table_name, lock_name};
+  return std::any_of(std::begin(own), std::end(own),
+                     [&](const char* one) { return name == one || is_partial_of(name, one); });
+}
 
 double psnr_of(double mean_squared_error) { return -10 * std::log10(std::max(mean_squared_error, 1e-10)); }
 
@@ -111,7 +120,7 @@ void TrainingRun::open_work_folder() {
   fs::create_directories(work_, error);
   if (error) throw FileError(work_, "cannot be created: " + error.message());
   for (const auto& entry : fs::directory_iterator(work_))
-    if (const std::string name = entry.path().filename().string(); !name.starts_with(file_prefix))
+    if (const std::string name = entry.path().filename().string(); !is_own(entry))
       throw FileError(work_, "holds \"" + name + "\", which is no file of a training; choose another output folder");
   lock_ = std::make_unique<FileLock>(work_ / lock_name);
   if (!lock_->held()) throw FileError(work_, "is in use by another training to the same folder");

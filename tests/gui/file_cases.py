@@ -270,6 +270,31 @@ class FileTest(WindowCase):
         editor.key("ctrl+i")
         editor.until_ops("import", "select", "select")
 
+    def test_a_script_replaces_only_scripts(self):
+        editor = self.open_ficus()
+        project = self.folder / "plant.rebake"
+        editor.key("ctrl+s")
+        editor.answer(str(project))
+        until(project.is_file, "the project")
+        link = self.folder / "plant.jsonl"
+        link.symlink_to(project)
+        other = self.folder / "cameras.jsonl"
+        other.write_text('{"frames": []}\n')
+        script = self.folder / "script.jsonl"
+        script.write_text("# mine\n" + '{"op": "undo"}\n')
+        before = {file: file.read_bytes() for file in (project, other)}
+        for file, why in ((link, "is a project"), (other, "is not a script")):
+            editor.command("save as script")
+            editor.answer(str(file))
+            editor.key("Return")
+            editor.until(lambda state: why in " ".join(state["messages"]), why)
+            editor.key("Escape")
+        self.assertEqual({file: file.read_bytes() for file in before}, before)
+        editor.command("save as script")
+        editor.answer(str(script))
+        editor.key("Return")
+        until(lambda: "import" in script.read_text(), "the script")
+
     def test_an_export_never_replaces_what_was_imported(self):
         source = self.folder / "plant"
         shutil.copytree(FICUS, source)

@@ -204,6 +204,39 @@ class ViewTest(WindowCase):
         editor.until(lambda state: editor.last_edit()["effects"] == ["cast"], "shadows on itself are off")
         self.assertNotIn("tabs/light/highlights", editor.state()["items"])
 
+    def test_a_model_of_light_is_trained_forgotten_and_loaded(self):
+        model = self.folder / "branch.light"
+        editor = self.open_ficus()
+        said = lambda text: until(lambda: text in " ".join(editor.state()["messages"]), text, 120)
+        editor.click("status/Light")
+        editor.click("tabs/light/follows-edits")
+        editor.until_ops("import", "light")
+        # Nothing was deformed yet: nothing to train on.
+        editor.click("tabs/light/model/train")
+        said("bend it first")
+        editor.command("bend by")
+        editor.click("form/degrees")
+        editor.type("60")
+        editor.click("form/apply")
+        editor.until_ops("import", "light", "bend")
+        editor.click("tabs/light/model/options")
+        for field, value in (("poses", "16"), ("rays", "16"), ("out", str(model))):
+            editor.click(f"tabs/light/model/options/{field}")
+            editor.key("ctrl+a")
+            editor.type(value)
+            editor.key("Tab")
+        editor.key("Escape")
+        editor.until(lambda state: "tabs/light/model/options/out" not in state["items"], "the options are closed")
+        editor.click("tabs/light/model/train")
+        said("now use the model")
+        self.assertGreater(model.stat().st_size, 1000)
+        self.assertEqual(editor.ops(), ["import", "light", "bend"], "training is no step of the history")
+        editor.click("tabs/light/model/forget")
+        said("rotate the transfer again")
+        editor.click("tabs/light/model/load")
+        editor.answer(str(model))
+        until(lambda: "now use the model" in "".join(editor.state()["messages"][-1:]), "the loaded model", 60)
+
     def test_a_picture_is_taken_as_light(self):
         sky = self.folder / "sky.png"
         subprocess.run(["convert", "-size", "64x32", "gradient:white-#302820", sky], check=True)

@@ -18,6 +18,7 @@
 #include "editor/edits/support.h"
 #include "editor/film/film_frames.h"
 #include "editor/gui/panels/file_dialog_purpose.h"
+#include "editor/gui/panels/light_model_form.h"
 #include "editor/gui/state/navigation.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/fonts.h"
@@ -157,6 +158,9 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       editor.edit(edit);
       break;
     }
+    case FileDialogPurpose::light_model:
+      use_light_model_of(editor, path.string());
+      break;
     case FileDialogPurpose::photographs:
       editor.dialogs.photographs = path.string();
       break;

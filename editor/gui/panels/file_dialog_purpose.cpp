@@ -31,6 +31,8 @@ constexpr FileDialogText questions[] = {
     {FileDialogPurpose::run_script, "Run script", "A script file with one edit or action per line.", "Run", ".jsonl"},
     {FileDialogPurpose::light_picture, "Environment map", "An equirectangular picture, twice as wide as high.", "Use",
      "", ".exr .hdr .png .jpg .jpeg .tif .tiff .webp"},
+    {FileDialogPurpose::light_model, "Light model", "A model that training or rebake light train has written.", "Use",
+     "", ".light"},
     {FileDialogPurpose::photographs, "Photographs", "A capture's folder, or its camera file.", "Use", "", ".json .npy"},
 };
 
@@ -52,7 +54,8 @@ std::string listed_endings(FileDialogPurpose kind) {
 
 bool reads(FileDialogPurpose kind) {
   return kind == FileDialogPurpose::open || kind == FileDialogPurpose::run_script ||
-         kind == FileDialogPurpose::light_picture || kind == FileDialogPurpose::photographs;
+         kind == FileDialogPurpose::light_picture || kind == FileDialogPurpose::light_model ||
+         kind == FileDialogPurpose::photographs;
 }
 
 bool makes_film(FileDialogPurpose kind) {
@@ -68,6 +71,8 @@ std::string problem_with(const fs::path& path, FileDialogPurpose kind) {
   if (!writes && !fs::exists(path, error)) return "File not found: " + path.string() + ".";
   if (kind == FileDialogPurpose::light_picture)
     return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file. Choose a picture file.";
+  if (kind == FileDialogPurpose::light_model)
+    return fs::is_regular_file(path, error) ? "" : path.filename().string() + " is not a file. Choose a model.";
   if (kind == FileDialogPurpose::photographs)
     return camera_format_at(path) != nullptr ? "" : path.filename().string() + " has no cameras in a known format.";
   if (!writes && fs::is_directory(path, error) && !holds_scene(path))

@@ -210,6 +210,7 @@ void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, b
     }
     ui::tip("Rotate", "", "Rotates the environment map about the vertical axis.");
   }
+  if (light.self) model_.draw(editor);
   dragging_ = now_dragging || (dragging_ && ImGui::IsMouseDown(ImGuiMouseButton_Left));
 }
 
@@ -219,7 +220,7 @@ void LightPanel::draw(EditorContext& editor) {
   if (on) last_ = *editor.scene().light;
   const SceneLight light = last_;
   const std::shared_ptr<const Lighting> lighting = on ? editor.relighter.latest() : nullptr;
-  const float left = std::min(px(330), 0.5F * ImGui::GetContentRegionAvail().x);
+  const float left = std::min(px(352), 0.5F * ImGui::GetContentRegionAvail().x);
   ImGui::BeginChild("settings", {left, 0});
   draw_settings(editor, light, on);
   ImGui::EndChild();

@@ -8,6 +8,7 @@
 
 #include "editor/edits/nodes/place.h"
 #include "editor/gui/panels/field_inputs.h"
+#include "editor/gui/panels/light_model_form.h"
 #include "editor/gui/state/editor_context.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/view/thumbnails.h"
@@ -46,6 +47,7 @@ class PropertiesPanel {
   void draw_several(DocumentEditor& editor);
   std::set<NodeId> of_;                                        ///< nodes that the numbers belong to
   Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};  ///< scene units, Euler angles in degrees, factors
+  LightModelForm model_;
   bool dragging_ = false;         ///< a number is being dragged, so the numbers differ from the document
   std::size_t problem_step_ = 0;  ///< number of history steps when `problem_` was set
   std::string problem_;
@@ -86,7 +88,8 @@ class LightPanel {
   SceneLight last_;               ///< settings when light last followed edits
   Vec3 sun_{0.5, 0.8, 0.45};      ///< edited direction towards the sun
   double budget_ = 1, turn_ = 0;  ///< edited error budget in 1/255, and rotation of the light image in degrees
-  bool dragging_ = false;         ///< a number is being dragged, so the numbers differ from the document
+  LightModelForm model_;
+  bool dragging_ = false;  ///< a number is being dragged, so the numbers differ from the document
 };
 
 /// All edits as script lines, to copy or save, and a field to run a typed line.

@@ -18,6 +18,7 @@ enum class FileDialogPurpose {
   save_script,
   run_script,
   light_picture,  ///< environment map for the scene's light
+  light_model,    ///< trained model of an object's light transfer
   photographs     ///< camera file or folder of a capture, for a training
 };
 

@@ -12,6 +12,7 @@
 #include "editor/actions/save.h"
 #include "editor/document/journal.h"
 #include "editor/document/project.h"
+#include "editor/document/replaced_work.h"
 #include "editor/gui/platform/default_program.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
@@ -21,6 +22,45 @@ namespace rebake {
 namespace fs = std::filesystem;
 
 namespace {
+
+// Whether nothing that a project keeps differs.
+bool same_work(const Scene& a, const Scene& b) {
+  const bool same_light = a.light == b.light || (a.light && b.light && *a.light == *b.light);
+  return a.roots == b.roots && a.views == b.views && a.background == b.background && a.ground == b.ground &&
+         a.camera_keys == b.camera_keys && same_light;
+}
+
+// Replaces the session's document. The work that was open goes to the trash if `keeps` it; returns whether it did.
+bool replace_document(Session& session, Document&& document, bool keeps) {
+  const fs::path present = session.document.journal_path();
+  if (!keeps) session.document.discard_journal();
+  session.document = std::move(document);
+  if (!keeps || present.empty()) return false;
+  LostWork open;
+  open.journal = present;
+  discard(open);
+  return true;
+}
+
+constexpr const char* moved_to_trash = "the work that was open before was moved to the trash (File, Discarded work)";
+
+// Throws FileError if a file exists that is no script.
+void refuse_replacing_other_than_script(const fs::path& file) {
+  refuse_replacing_work(file);
+  std::error_code error;
+  if (!fs::exists(file, error) || (fs::is_regular_file(file, error) && fs::file_size(file, error) == 0)) return;
+  const std::string text = with_line_feeds(read_file(file));
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string line(command_text(std::string_view(text).substr(at, end - at)));
+    at = end + 1;
+    if (line.empty()) continue;
+    const nlohmann::json first = nlohmann::json::parse(line, nullptr, false);
+    if (first.is_object() && first.contains("op")) return;
+    break;
+  }
+  throw FileError(file, "exists and is not a script, so it is not replaced; choose another name");
+}
 
 void keep_journal(Document& document) {
   const fs::path folder = journal_folder();
@@ -67,12 +107,13 @@ void Project::open_project(const fs::path& file, const SourceLinks& links) {
   auto gone = std::make_shared<std::vector<SourcesUnavailable::Source>>();
   worker_.start(
       "open",
-      [file, links, gone](Session& session) {
+      [file, links, gone, asked = now_->scene](Session& session) {
         try {
           Document opened = Document::open(file, links, session.progress);
           keep_journal(opened);
-          session.document.discard_journal();
-          session.document = std::move(opened);
+          // A job that ran when the user asked may have changed the document since.
+          if (replace_document(session, std::move(opened), !same_work(session.scene(), asked)))
+            session.say(moved_to_trash);
         } catch (const SourcesUnavailable& moved) {
           *gone = moved.sources;  // the user is asked for new paths
         }
@@ -95,21 +136,16 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
   auto problem = std::make_shared<std::string>();
   worker_.start(
       "recover",
-      [journal, links, gone, problem, go_on_without, keeps_present = unsaved()](Session& session) {
+      [journal, links, gone, problem, go_on_without, was_unsaved = unsaved(), asked = now_->scene](Session& session) {
         Document::Recovered recovered = Document::recover(journal, links, session.progress);
         *gone = recovered.gone;
         if (!gone->empty() && !go_on_without) return;  // the user is asked for new paths
         if (!recovered.document.keeps_journal()) keep_journal(recovered.document);
-        const fs::path present = session.document.journal_path();
-        if (!keeps_present) session.document.discard_journal();
-        session.document = std::move(recovered.document);
+        // A job that ran when the user asked may have changed the document since.
+        const bool kept =
+            replace_document(session, std::move(recovered.document), was_unsaved || !same_work(session.scene(), asked));
         std::string said = fmt::format("{} edits recovered", recovered.edits);
-        if (keeps_present && !present.empty()) {
-          LostWork open;
-          open.journal = present;
-          discard(open);
-          said += "; the work that was open before was moved to the trash (File, Discarded work)";
-        }
+        if (kept) said += fmt::format("; {}", moved_to_trash);
         if (recovered.torn) said += "; the last edit was incomplete when the editor ended and is lost";
         if (recovered.skipped_undone > 0)
           said +=
@@ -212,6 +248,7 @@ void Project::save_script(const fs::path& file) {
   std::string text;
   for (const Edit& one : now_->done) text += to_json(one).dump() + "\n";
   worker_.start("save script", [file, text](Session& session) {
+    refuse_replacing_other_than_script(file);
     write_file_atomically(file, text, session.document.sources());
     session.say("Wrote " + file.string());
   });
@@ -221,13 +258,6 @@ void Project::run_script(const fs::path& file) {
   worker_.start("script", [file](Session& session) { rebake::run_script(session, read_input(file), file, {}); });
 }
 
-bool Project::unsaved() const {
-  const Scene& kept = saved_ ? *saved_ : imported;
-  const std::shared_ptr<const SceneLight>&now = now_->scene.light, &before = kept.light;
-  const bool same_light = now == before || (now && before && *now == *before);
-  return now_->scene.roots != kept.roots || now_->scene.views != kept.views ||
-         now_->scene.background != kept.background || now_->scene.ground != kept.ground ||
-         now_->scene.camera_keys != kept.camera_keys || !same_light;
-}
+bool Project::unsaved() const { return !same_work(now_->scene, saved_ ? *saved_ : imported); }
 
 }  // namespace rebake

@@ -56,7 +56,7 @@ std::vector<LostWork> work_in(const fs::path& folder, bool discarded) {
           std::chrono::time_point_cast<std::chrono::system_clock::duration>(std::chrono::file_clock::to_sys(written));
     try {
       const Journal::Contents contents = Journal::read(path);
-      if (contents.entries.empty() && contents.damaged_line == 0) {
+      if (contents.entries.empty() && contents.damaged_line == 0 && !contents.torn) {
         // Deletes empty journals, but not new ones: another editor may just be starting.
         if (!unknown && fs::file_time_type::clock::now() - written > std::chrono::minutes(1)) fs::remove(path, unknown);
         continue;

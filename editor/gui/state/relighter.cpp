@@ -41,6 +41,11 @@ void Relighter::request(const Scene& scene, bool rough, std::set<NodeId> nodes) 
   changed_.notify_all();
 }
 
+void Relighter::forget_request() {
+  const std::lock_guard lock(mutex_);
+  asked_.reset();
+}
+
 std::shared_ptr<const Lighting> Relighter::latest() const {
   const std::lock_guard lock(mutex_);
   return latest_;

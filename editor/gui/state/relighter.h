@@ -27,6 +27,8 @@ class Relighter {
   /// `nodes`: nodes that may be dragged next. If only their triangles have moved since the last full result, their
   /// light is rotated with the surface (DragLight) instead of traced.
   void request(const Scene& scene, bool rough, std::set<NodeId> nodes);
+  /// Makes the next request compute again, because a trained model was stored or removed.
+  void forget_request();
   /// The latest result; null if the baked light is to be shown. May belong to an earlier scene and is then approximate.
   /// Lighting::map_of() ignores it for texture sets whose UVs have changed.
   std::shared_ptr<const Lighting> latest() const;

@@ -24,6 +24,10 @@ class TraceCache {
  public:
   TraceCache(const fs::path& file, std::uint64_t hash, std::size_t block) : file_(file), block_(block) {
     if (file_.empty()) return;
+    // Links to other files are removed, so that those are not written to.
+    if (std::error_code error;
+        fs::is_symlink(file_, error) || (fs::exists(file_, error) && fs::hard_link_count(file_, error) > 1))
+      fs::remove(file_);
     std::ifstream in(file_, std::ios::binary);
     std::uint64_t known = 0;
     if (in.read(reinterpret_cast<char*>(&known), sizeof known) && known == hash) {
@@ -32,6 +36,8 @@ class TraceCache {
       in.close();
       fs::resize_file(file_, sizeof hash + frames_.size() * static_cast<std::size_t>(bytes()));
     } else {
+      in.close();
+      fs::remove(file_);
       std::ofstream out(file_, std::ios::binary);
       out.write(reinterpret_cast<const char*>(&hash), sizeof hash);
     }

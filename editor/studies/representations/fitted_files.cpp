@@ -26,7 +26,7 @@ using Method = FittedFiles::Method;
 namespace {
 
 constexpr double enough_db = 0.2;  // a doubling that gains less is the last
-constexpr int first_epochs = 10;
+constexpr int first_epochs = 10, most_epochs = 160;
 constexpr int curve_views = 2;
 
 double mean_psnr(const std::vector<HeldOutView>& views, const std::function<Image(const View&)>& draw) {
@@ -87,7 +87,7 @@ void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth&
   std::vector<HeldOutView> views = truth.held_out(fitted.folder.parent_path());
   views.resize(std::min<std::size_t>(views.size(), curve_views));
   const bool epochs = fitted.method == Method::mobilenerf;
-  Budget budget(input, fitted, std::move(views), epochs ? sizes.most_passes * first_epochs : sizes.most_passes);
+  Budget budget(input, fitted, std::move(views), epochs ? most_epochs : sizes.most_passes);
   const auto start = std::chrono::steady_clock::now();
   fs::create_directories(fitted.folder);
   if (epochs) {

@@ -16,9 +16,9 @@ struct RepresentationSizes {
   std::vector<int> resolutions;     ///< of both volumes: voxels along the longest side
   std::vector<int> texels;          ///< of MobileNeRF: texels per side of a quad; the samples have 17
   int views = 48;                   ///< that representations are fitted to
-  int ray_side = 300;               ///< rays per side of each of these views
+  int ray_side = 240;               ///< rays per side of each of these views
   int held_out = 4, picture = 400;  ///< held-out pictures, and their side
-  int most_passes = 64;             ///< of a fit, or epochs / 10
+  int most_passes = 64;             ///< of a fit of a volume
 };
 
 /// The truth of a sample, made when first asked for.

@@ -31,8 +31,16 @@ class Fit {
         cells_(cells_around(rays.hits, resolution, margin, true)),
         adam_(cells_.count(), rates()),
         most_seen_(cells_.count(), 0) {
-    for (std::size_t cell = 0; cell < cells_.count(); ++cell)
-      adam_.values(cell)[density] = cells_.surface[cell] != 0 ? 1.5F : 0.05F;
+    const std::vector<std::array<float, 3>> colors = mean_colors(cells_, rays.hits, rays.hit_colors);
+    const auto constant = static_cast<float>(tree_harmonics(Vec3::UnitX())[0]);
+    for (std::size_t cell = 0; cell < cells_.count(); ++cell) {
+      float* value = adam_.values(cell);
+      value[density] = cells_.surface[cell] != 0 ? 1.5F : 0.05F;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float color = std::clamp(colors[cell][c], 0.02F, 0.98F);
+        value[c * basis] = std::log(color / (1 - color)) / constant;
+      }
+    }
   }
 
   void pass(int number, const Progress& progress) {

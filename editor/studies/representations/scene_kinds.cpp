@@ -63,7 +63,9 @@ TruthRays traced_rays(const bakery::Model& model, const bakery::RadianceField& f
   TruthRays result;
   for (const Traced& one : traced) {
     result.rays.push_back(one.ray);
-    if (one.met) result.hits.push_back(one.point);
+    if (!one.met) continue;
+    result.hits.push_back(one.point);
+    result.hit_colors.push_back(one.ray.color);
   }
   return result;
 }

@@ -15,10 +15,8 @@ struct SceneKind {
   const char* sample;
   const char* kind;
 };
-inline constexpr SceneKind scene_kinds[] = {{"ficus", "synthetic 360°"},
-                                            {"kettle", "synthetic 360°, glossy"},
-                                            {"shelf", "forward-facing"},
-                                            {"courtyard", "unbounded 360°"}};
+inline constexpr SceneKind scene_kinds[] = {
+    {"ficus", "synthetic 360°"}, {"shelf", "forward-facing"}, {"courtyard", "unbounded 360°"}};
 
 /// The model of this name. Throws FieldError.
 bakery::Model procedural_model(const std::string& sample);
@@ -32,7 +30,8 @@ struct TruthRay {
 /// Rays of the views that representations are fitted to, in random order.
 struct TruthRays {
   std::vector<TruthRay> rays;
-  std::vector<Vec3> hits;  ///< points of the surfaces that they meet
+  std::vector<Vec3> hits;                             ///< points of the surfaces that they meet
+  std::vector<std::array<float, 3>> hit_colors = {};  ///< of the rays that meet them
 };
 
 /// Traces `side`² rays through random points of each of the `views` pictures that a bake observes, see

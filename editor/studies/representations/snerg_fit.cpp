@@ -34,13 +34,14 @@ class Fit {
         cells_(cells_around(rays.hits, resolution, margin, false)),
         adam_(cells_.count(), std::vector<float>(snerg_channels, 0.01F)),
         most_seen_(cells_.count(), 0) {
+    const std::vector<std::array<float, 3>> colors = mean_colors(cells_, rays.hits, rays.hit_colors);
     std::mt19937 random(1);
     for (std::size_t cell = 0; cell < cells_.count(); ++cell) {
       const bool surface = cells_.surface[cell] != 0;
       float* value = adam_.values(cell);
       for (std::size_t c = 0; c < snerg_channels; ++c)
         value[c] = c == snerg_alpha ? (surface ? 0.5F : 0.05F)
-                   : c < 3          ? (surface ? 0.25F : 0.025F)
+                   : c < 3          ? (surface ? 0.5F : 0.05F) * colors[cell][c]
                                     : (surface ? 0.25F : 0.025F) * static_cast<float>(random() % 1024) / 1024;
     }
   }

@@ -7,17 +7,22 @@ namespace rebake {
 
 namespace {
 
+std::array<int, 3> cell_of(const VoxelCells& cells, const Vec3& point) {
+  std::array<int, 3> at{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    at[a] =
+        std::clamp(static_cast<int>(std::floor((point[axis] - cells.min[axis]) / cells.voxel)), 0, cells.size[a] - 1);
+  }
+  return at;
+}
+
 // Which cells contain a point.
 std::vector<std::uint8_t> cells_with(const std::vector<Vec3>& points, const VoxelCells& cells) {
   std::vector<std::uint8_t> met(cells.number.size(), 0);
   for (const Vec3& point : points) {
-    std::array<int, 3> at{};
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto axis = static_cast<Eigen::Index>(a);
-      at[a] =
-          std::clamp(static_cast<int>(std::floor((point[axis] - cells.min[axis]) / cells.voxel)), 0, cells.size[a] - 1);
-    }
-    met[cells.index(at[0], at[1], at[2])] = 1;
+    const auto [x, y, z] = cell_of(cells, point);
+    met[cells.index(x, y, z)] = 1;
   }
   return met;
 }
@@ -51,6 +56,33 @@ void number_cells(VoxelCells& cells, const std::vector<std::uint8_t>& met) {
 }
 
 }  // namespace
+
+std::vector<std::array<float, 3>> mean_colors(const VoxelCells& cells, const std::vector<Vec3>& points,
+                                              const std::vector<std::array<float, 3>>& colors) {
+  std::vector<std::array<double, 4>> sums(cells.count());
+  for (std::size_t k = 0; k < points.size() && k < colors.size(); ++k) {
+    const auto [x, y, z] = cell_of(cells, points[k]);
+    const std::int32_t number = cells.number_at(x, y, z);
+    if (number < 0) continue;
+    auto& sum = sums[static_cast<std::size_t>(number)];
+    for (std::size_t c = 0; c < 3; ++c) sum[c] += static_cast<double>(colors[k][c]);
+    sum[3] += 1;
+  }
+  std::vector<std::array<float, 3>> means(cells.count(), {0.5F, 0.5F, 0.5F});
+  for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+    std::array<double, 4> sum = sums[cell];
+    const auto [x, y, z] = cells.at[cell];
+    if (sum[3] == 0)
+      for_neighbours(cells, x, y, z, [&](int i, int j, int k) {
+        const std::int32_t number = cells.number_at(i, j, k);
+        if (number < 0) return;
+        for (std::size_t c = 0; c < 4; ++c) sum[c] += sums[static_cast<std::size_t>(number)][c];
+      });
+    if (sum[3] == 0) continue;
+    for (std::size_t c = 0; c < 3; ++c) means[cell][c] = static_cast<float>(sum[c] / sum[3]);
+  }
+  return means;
+}
 
 VoxelCells cells_around(const std::vector<Vec3>& points, int resolution, int margin, bool cube) {
   Box bounds;

@@ -33,6 +33,10 @@ struct VoxelCells {
   }
 };
 
+/// Mean colour of the points in each occupied cell, from the cells beside it if it has none; `colors`: of the points.
+std::vector<std::array<float, 3>> mean_colors(const VoxelCells& cells, const std::vector<Vec3>& points,
+                                              const std::vector<std::array<float, 3>>& colors);
+
 /// Cells around points of surfaces, in a grid with `resolution` cells along the longest side of their bounds and
 /// `margin` cells around them. A cell is occupied if it, or one of its 26 neighbours, contains a point. `cube`: the
 /// grid has `resolution` cells along every side.

@@ -162,6 +162,25 @@ TEST_F(Train, CheckpointsThatCannotBeWrittenDoNotStopIt) {
   expect_error(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/mine", "side": 16, "steps": 600})",
                "preview.png");
   EXPECT_EQ(read_file(at("mine.training/preview.png")), "mine");
+  // Links lead to files of others, and a capture may have names like those of a training.
+  const auto photograph_bytes = folder_hash(at("cap"));
+  for (const char* name : {"rebake-preview.png", "rebake-progress.csv", "rebake-checkpoint"}) {
+    fs::create_directories(at("linked.training"));
+    fs::create_symlink(at("cap/transforms_train.json"), at("linked.training") / fs::path(name));
+    expect_error(
+        R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/linked", "side": 16, "steps": 600, "fresh": true})",
+        name);
+    fs::remove(at("linked.training") / fs::path(name));
+    fs::create_hard_link(at("cap/transforms_train.json"), at("linked.training") / fs::path(name));
+    expect_error(
+        R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/linked", "side": 16, "steps": 600, "fresh": true})",
+        name);
+    fs::remove(at("linked.training") / fs::path(name));
+  }
+  write_text(at("linked.training/rebake-transforms.json"), "{}");
+  expect_error(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/linked", "side": 16, "steps": 600})",
+               "rebake-transforms.json");
+  EXPECT_EQ(folder_hash(at("cap")), photograph_bytes);
   fs::create_directories(at("out.training/rebake-checkpoint"));  // a folder where the file should be
   run(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/out", "side": 16, "steps": 600, "fresh": true})");
   EXPECT_NE(said().find("the checkpoint could not be written"), std::string::npos);

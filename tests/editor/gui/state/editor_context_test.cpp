@@ -16,6 +16,7 @@
 #include "editor/edits/select/select_triangles.h"
 #include "editor/edits/support.h"
 #include "editor/gui/state/editor_context.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
 #include "tests/support/made_scenes.h"
 
@@ -234,6 +235,32 @@ TEST_F(EditorContextTest, TitlesAreImmutable) {
   EXPECT_EQ(editor->status, "Undid: Renamed to \"crate\"");
   EXPECT_EQ(editor->now->steps[3].title, "Renamed to \"crate\"");
   EXPECT_EQ(editor->now->steps_done, 3U);
+}
+
+TEST_F(EditorContextTest, AnEditThatRunsWhileAProjectIsOpenedGoesToTheTrash) {
+  editor->project.begin_journal();
+  const std::filesystem::path project = home.path() / "two.rebake";
+  editor->project.save(project);
+  wait();
+  ASSERT_FALSE(editor->project.unsaved());
+  // The edit ends after the user has asked for the project.
+  std::atomic<bool> asked = false;
+  const NodeId ball = id("ball");
+  editor->jobs.worker.start("slow edit", [&asked, ball](Session& session) {
+    while (!asked) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    Rename edit;
+    edit.node = {ball};
+    edit.name = "slow";
+    session.edit(edit);
+  });
+  editor->project.open({project.string()});
+  asked = true;
+  wait();
+  std::vector<std::filesystem::path> trash;
+  for (const auto& entry : std::filesystem::directory_iterator(home.path() / "rebake/trash")) trash.push_back(entry);
+  ASSERT_EQ(trash.size(), 1U);
+  EXPECT_NE(read_file(trash.front()).find("slow"), std::string::npos);
+  EXPECT_TRUE(find(editor->scene(), std::string("ball"))) << "the project is open";
 }
 
 }  // namespace
