@@ -82,7 +82,8 @@ std::shared_ptr<const DragLight> drag_light_of(Scene scene, NodeId node, const P
 std::shared_ptr<const BakedObject> object_as_read(const Node& node) {
   const std::vector<BakedBody> bodies = bodies_of(*node.object);
   if (bodies.size() != 1 || !bodies.front().to_object.matrix().isIdentity(0))
-    throw Error(fmt::format("\"{}\" was joined from several objects; train on each before joining them", node.name));
+    throw Error(fmt::format(
+        "\"{}\" was joined from several objects: models belong to the objects before they are joined", node.name));
   return bodies.front().object;
 }
 
@@ -129,7 +130,14 @@ NodePtr object_for_light_model(const Scene& scene, const std::string& name) {
 TransferModel trained_light_model(const Scene& scene, const NodePtr& node, const std::vector<std::string>& lines,
                                   const TransferModelOptions& options, const Progress& progress) {
   const std::shared_ptr<const BakedObject> read = object_as_read(*node);
-  const Scene start = with_changed(scene, node->id, [&](Node& changed) { changed.object = read; });
+  const Scene start = with_changed(scene, node->id, [&](Node& changed) {
+    // Selections of an object with other triangles do not fit.
+    if (changed.object->triangle_count() != read->triangle_count()) {
+      changed.selection = nullptr;
+      changed.saved_selections.clear();
+    }
+    changed.object = read;
+  });
   const std::vector<nlohmann::json> edits = checked_edits(start, node, lines);
   const auto turning = drag_light_of(start, node->id, progress);
   const auto pose = [&](int k) {
@@ -192,16 +200,18 @@ TransferModel read_light_model(const fs::path& path) {
   }
 }
 
-NodePtr use_light_model(const TransferModel& model, const Scene& scene) {
+NodePtr use_light_model(const TransferModel& model, const Scene& scene, const fs::path& file) {
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.node->object) continue;
-    for (const BakedBody& body : bodies_of(*placed.node->object)) {
-      if (surface_hash(*body.object) != model.body) continue;
-      cache().keep(transfer_model_key(*body.object, model.sites), bytes_of(model));
-      return find(scene, placed.node->id);
-    }
+    // Drags of joined objects use no model.
+    const std::vector<BakedBody> bodies = bodies_of(*placed.node->object);
+    if (bodies.size() != 1 || surface_hash(*bodies.front().object) != model.body) continue;
+    cache().keep(transfer_model_key(*bodies.front().object, model.sites), bytes_of(model));
+    return find(scene, placed.node->id);
   }
-  throw Error("the model was trained for another object: no object in the scene has its triangles and texels");
+  const std::string why = "was trained for another object: no object in the scene has its triangles and texels";
+  if (!file.empty()) throw FileError(file, why);
+  throw Error("the model " + why);
 }
 
 bool forget_light_model(const Scene& scene, const NodePtr& node, const Progress& progress) {

@@ -33,8 +33,9 @@ void check_light_model_output(const std::filesystem::path& path, const SourceGua
 TransferModel read_light_model(const std::filesystem::path& path);
 
 /// Stores a model in the result cache for the object of the scene that it was trained for: drags of the object use it
-/// from now on. Returns the object's node. Throws Error if there is no such object or no cache.
-NodePtr use_light_model(const TransferModel& model, const Scene& scene);
+/// from now on. Returns the object's node. `file`: of the model, for errors; empty: none. Throws Error if there is no
+/// such object or no cache; FileError if `file` is not empty.
+NodePtr use_light_model(const TransferModel& model, const Scene& scene, const std::filesystem::path& file);
 
 /// Removes the model of a node's object from the cache. Returns whether there was one.
 bool forget_light_model(const Scene& scene, const NodePtr& node, const Progress& progress);

@@ -84,6 +84,8 @@ void run(Session& session, const TrainLightAction& action) {
         sources.add_file(file, "a file that an edit reads");
     check_light_model_output(action.out, sources);
   }
+  if (action.out.empty() && !result_cache())
+    throw FieldError("out", "is missing: name a file, because the result cache is off (REBAKE_RESULTS is empty)");
   const TransferModel model = trained_light_model(scene, node, edits, options, session.progress);
   for (const std::string& fact : facts_of(model)) session.say(fact);
   if (!action.out.empty()) {
@@ -94,10 +96,10 @@ void run(Session& session, const TrainLightAction& action) {
     session.say(
         fmt::format("drags of \"{}\" do not use the model: it is no better than rotating the transfer", node->name));
   } else if (result_cache()) {
-    use_light_model(model, scene);
+    use_light_model(model, scene, {});
     session.say(fmt::format("drags of \"{}\" now use the model", node->name));
-  } else if (action.out.empty()) {
-    throw FieldError("out", "is missing: name a file, because the result cache is off (REBAKE_RESULTS is empty)");
+  } else {
+    session.say("drags do not use the model, because the result cache is off (REBAKE_RESULTS is empty)");
   }
 }
 

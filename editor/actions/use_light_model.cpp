@@ -18,8 +18,9 @@ std::vector<std::filesystem::path> UseLightModelAction::input_files(const nlohma
 
 void run(Session& session, const UseLightModelAction& action) {
   const TransferModel model = read_light_model(action.model);
+  const NodePtr node = use_light_model(model, session.scene(), action.model);
   for (const std::string& fact : facts_of(model)) session.say(fact);
-  session.say(fmt::format("drags of \"{}\" now use the model", use_light_model(model, session.scene())->name));
+  session.say(fmt::format("drags of \"{}\" now use the model", node->name));
 }
 
 REBAKE_DESCRIBE_ACTION(

@@ -34,8 +34,8 @@ void say(const TransferModel& model) {
   for (const std::string& fact : facts_of(model)) fmt::print("{}\n", fact);
 }
 
-void keep(const TransferModel& model, const Scene& scene) {
-  use_light_model(model, scene);
+void keep(const TransferModel& model, const Scene& scene, const std::string& file) {
+  use_light_model(model, scene, file);
   fmt::print("stored: drags of this object now use the model\n");
 }
 
@@ -78,7 +78,7 @@ void train(const Options& options) {
     if (options.out.empty()) throw Error("the model is not stored: " + why);
     fmt::print("not stored: {}\n", why);
   } else if (options.out.empty() || result_cache()) {
-    keep(model, scene);
+    keep(model, scene, {});
   }
 }
 
@@ -90,7 +90,7 @@ void keep_model(const Options& options) {
   auto [scene, sources] =
       load_scenes({options.paths.begin() + 1, options.paths.end()}, options.reading, progress_bar());
   clear_progress_bar();
-  keep(model, scene);
+  keep(model, scene, options.paths.front());
 }
 
 }  // namespace

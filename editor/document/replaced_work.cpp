@@ -24,8 +24,8 @@ bool holds_project(const fs::path& path) {
 
 namespace {
 
-// Whether a file that has not the extension of projects is one, for example a link to it. Only files that begin as JSON
-// are read as a whole.
+// Whether a file without the extension of projects is a project, for example a link to it. Only files that begin as
+// JSON are read as a whole.
 bool is_project_by_another_name(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;

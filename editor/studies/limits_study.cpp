@@ -29,11 +29,13 @@ Scene scene_with(std::shared_ptr<const BakedObject> object) {
   return with_added({}, std::move(node), NodeId::none, 0);
 }
 
+// Texels per side of a quad: fewer in quick runs.
+int texels_of(const StudyInput& input, int texels) { return input.quick ? texels / 2 : texels; }
+
 Scene baked(const StudyInput& input, const bakery::Model& model, const bakery::RadianceField& field, int texels) {
-  // More than 20 epochs gain nothing, see the study of representations.
   const bakery::BakeOptions options{.epochs = input.quick ? 2 : 20,
                                     .observations = input.quick ? 8 : 48,
-                                    .texels_per_side = input.quick ? texels / 2 : texels};
+                                    .texels_per_side = texels_of(input, texels)};
   return scene_with(bakery::bake(model, field, options, input.progress));
 }
 
@@ -147,9 +149,10 @@ bakery::Patch veil(const std::function<bool(double, double)>& opaque) {
   return patch;
 }
 
-// The truth with the veil at half opacity: the mean of its colours and of those behind it.
-Image veiled(const Camera& camera, const bakery::RadianceField& with, const bakery::RadianceField& without,
-             std::size_t veil_patch) {
+// The truth with the veil at half opacity: the mean of its colours and of those behind it. All colours are in the light
+// of `light`; the others find the surfaces with the veil and without.
+Image veiled(const Camera& camera, const bakery::RadianceField& light, const bakery::RadianceField& with,
+             const bakery::RadianceField& without, std::size_t veil_patch) {
   constexpr int rays = 4;  // per pixel side
   Image image{picture_side, picture_side, std::vector<std::uint8_t>(std::size_t{picture_side} * picture_side * 3), {}};
   const Mat3 to_world = world_to_camera(camera).transpose();
@@ -158,13 +161,14 @@ Image veiled(const Camera& camera, const bakery::RadianceField& with, const bake
     for (int x = 0; x < picture_side; ++x) {
       Color sum = Color::Zero();
       for (int s = 0; s < rays * rays; ++s) {
-        const Vec3 at(((x + (s % rays + 0.5) / rays) / picture_side * 2 - 1) * extent,
-                      (1 - (y + (s / rays + 0.5) / rays) / picture_side * 2) * extent, -1);
+        const int column = s % rays, row = s / rays;
+        const Vec3 at(((x + (column + 0.5) / rays) / picture_side * 2 - 1) * extent,
+                      (1 - (y + (row + 0.5) / rays) / picture_side * 2) * extent, -1);
         const Vec3 direction = (to_world * at).normalized();
         const auto behind = without.hit(camera.eye, direction), first = with.hit(camera.eye, direction);
-        Color color = behind ? without.color(behind->patch, behind->u, behind->v, direction) : Color(Color::Ones());
+        Color color = behind ? light.color(behind->patch, behind->u, behind->v, direction) : Color(Color::Ones());
         if (first && first->patch == veil_patch)
-          color = (color + with.color(first->patch, first->u, first->v, direction)) / 2;
+          color = (color + light.color(first->patch, first->u, first->v, direction)) / 2;
         sum += color;
       }
       for (Eigen::Index c = 0; c < 3; ++c)
@@ -179,21 +183,23 @@ void study_opacity(const StudyInput& input, const std::filesystem::path& own, St
   const bakery::Model bare = procedural_model("shelf");
   bakery::Model closed = bare, dithered = bare;
   closed.patches.push_back(veil([](double, double) { return true; }));
-  // A chequerboard of texels: 16 steps per quad side.
-  dithered.patches.push_back(veil([](double u, double v) {
-    return (std::lround(u * veil_columns * 16) + std::lround(v * veil_rows * 16)) % 2 == 0;
+  // A chequerboard of texels.
+  const int steps = texels_of(input, 17) - 1;
+  dithered.patches.push_back(veil([steps](double u, double v) {
+    return (std::lround(u * veil_columns * steps) + std::lround(v * veil_rows * steps)) % 2 == 0;
   }));
-  input.say("semi-transparent parts: baking a veil of half opacity before the shelf");
-  const bakery::RadianceField without(bare), with(closed);
-  const Scene none_of_it = baked(input, bare, without, 17), all_of_it = baked(input, closed, with, 17),
-              half_of_it = baked(input, dithered, with, 17);
+  input.say("semi-transparent parts: baking a veil of half opacity in front of the shelf");
+  // The veil lets half of the light through in all of them.
+  const bakery::RadianceField light(dithered), with(closed), without(bare);
+  const Scene none_of_it = baked(input, bare, light, 17), all_of_it = baked(input, closed, light, 17),
+              half_of_it = baked(input, dithered, light, 17);
   const std::vector<Choice> choices{{"half opacity: left out", none_of_it, 4},
                                     {"half opacity: opaque", all_of_it, 4},
                                     {"half opacity: every other texel, 1 sample", half_of_it, 1},
                                     {"half opacity: every other texel, 4 samples", half_of_it, 4},
                                     {"half opacity: every other texel, 16 samples", half_of_it, 16}};
   const Camera camera = bare.camera(0.4, 0.6);
-  const Image truth = veiled(camera, with, without, bare.patches.size());
+  const Image truth = veiled(camera, light, with, without, bare.patches.size());
   std::vector<Image> pictures{truth};
   for (const Choice& choice : choices) {
     const double psnr = psnr_of(input, choice, camera, truth, pictures);

@@ -8,6 +8,7 @@ uniform vec3 tree_offset, tree_scale;
 
 out vec4 picture;
 
+const int most_steps = 65536;  // more than leaves of 16 levels along a ray that is not degenerate
 const float smallest_density = 0.01, smallest_light = 0.01;
 
 void harmonics(vec3 d, out float basis[BASIS]) {
@@ -45,8 +46,10 @@ vec3 march(vec3 direction) {
   float basis[BASIS];
   harmonics(direction, basis);
   vec3 color = vec3(0.0);
-  float light = 1.0, t = max(0.0, range.x);
-  while (t < range.y) {
+  // Parameters count from where the ray enters the cube, so that they are small.
+  origin += inside * max(0.0, range.x);
+  float light = 1.0, t = 0.0, end = range.y - max(0.0, range.x);
+  for (int steps = 0; steps < most_steps && t < end; ++steps) {
     vec3 within = clamp(origin + t * inside, 0.0, 0.9999999), corner = vec3(0.0);
     float size = 1.0;
     int node = 0, child = 1;
@@ -59,7 +62,7 @@ vec3 march(vec3 direction) {
       child = texelFetch(children, node * 8 + 4 * octant.x + 2 * octant.y + octant.z).r;
       node = child;
     }
-    float leave = max(box_range(corner, corner + size, origin, inverse_direction).y, t), nudge = size * 1e-3;
+    float leave = max(box_range(corner, corner + size, origin, inverse_direction).y, t), nudge = max(size * 1e-3, t * 2e-7);
     if (child < 0) {
       int record = -1 - child;
       vec4 data[RECORD];

@@ -52,10 +52,9 @@ void LightModelForm::draw(EditorContext& editor) {
   ui::label("Drag model");
   ImGui::BeginDisabled(editor.jobs.worker.busy());
   if (ui::button("Train##train")) train(editor);
-  ui::tip(
-      "Train", "",
-      "Trains a model of the light on the picked object while it is deformed as in the history. Drags then use it if "
-      "it is better than rotated light. Esc cancels.");
+  ui::tip("Train", "",
+          "Trains a light model for the picked object from its deformations in the history. Drags then use it if it is "
+          "better than rotated light. Esc cancels.");
   ImGui::SameLine();
   if (ui::button("Load...##load")) editor.dialogs.path = FileDialogPurpose::light_model;
   ui::tip("Load...", "", "Makes drags use a trained model from a file.");

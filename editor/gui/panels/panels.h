@@ -47,7 +47,6 @@ class PropertiesPanel {
   void draw_several(DocumentEditor& editor);
   std::set<NodeId> of_;                                        ///< nodes that the numbers belong to
   Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};  ///< scene units, Euler angles in degrees, factors
-  LightModelForm model_;
   bool dragging_ = false;         ///< a number is being dragged, so the numbers differ from the document
   std::size_t problem_step_ = 0;  ///< number of history steps when `problem_` was set
   std::string problem_;

@@ -30,19 +30,22 @@ bool same_work(const Scene& a, const Scene& b) {
          a.camera_keys == b.camera_keys && same_light;
 }
 
-// Replaces the session's document. The work that was open goes to the trash if `keeps` it; returns whether it did.
-bool replace_document(Session& session, Document&& document, bool keeps) {
+// Replaces the session's document. The work that was open goes to the trash if it is to be kept. Returns what became of
+// it, for the user; empty: nothing to say.
+std::string replace_document(Session& session, Document&& document, bool keeps) {
   const fs::path present = session.document.journal_path();
   if (!keeps) session.document.discard_journal();
   session.document = std::move(document);
-  if (!keeps || present.empty()) return false;
+  if (!keeps || present.empty()) return "";
   LostWork open;
   open.journal = present;
-  discard(open);
-  return true;
+  try {
+    discard(open);
+  } catch (const fs::filesystem_error&) {
+    return "the work that was open before is still in " + present.string();
+  }
+  return "the work that was open before was moved to the trash (File, Discarded work)";
 }
-
-constexpr const char* moved_to_trash = "the work that was open before was moved to the trash (File, Discarded work)";
 
 // Throws FileError if a file exists that is no script.
 void refuse_replacing_other_than_script(const fs::path& file) {
@@ -112,8 +115,9 @@ void Project::open_project(const fs::path& file, const SourceLinks& links) {
           Document opened = Document::open(file, links, session.progress);
           keep_journal(opened);
           // A job that ran when the user asked may have changed the document since.
-          if (replace_document(session, std::move(opened), !same_work(session.scene(), asked)))
-            session.say(moved_to_trash);
+          if (const std::string said = replace_document(session, std::move(opened), !same_work(session.scene(), asked));
+              !said.empty())
+            session.say(said);
         } catch (const SourcesUnavailable& moved) {
           *gone = moved.sources;  // the user is asked for new paths
         }
@@ -142,10 +146,10 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
         if (!gone->empty() && !go_on_without) return;  // the user is asked for new paths
         if (!recovered.document.keeps_journal()) keep_journal(recovered.document);
         // A job that ran when the user asked may have changed the document since.
-        const bool kept =
+        const std::string kept =
             replace_document(session, std::move(recovered.document), was_unsaved || !same_work(session.scene(), asked));
         std::string said = fmt::format("{} edits recovered", recovered.edits);
-        if (kept) said += fmt::format("; {}", moved_to_trash);
+        if (!kept.empty()) said += "; " + kept;
         if (recovered.torn) said += "; the last edit was incomplete when the editor ended and is lost";
         if (recovered.skipped_undone > 0)
           said +=

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "editor/studies/representations/marched_volume.h"
 #include "editor/studies/representations/plenoctree_files.h"
@@ -27,7 +28,9 @@ namespace {
 
 constexpr double enough_db = 0.2;  // a doubling that gains less is the last
 constexpr int first_epochs = 10, most_epochs = 160;
-constexpr int curve_views = 2;
+constexpr int validation_views = 2;
+// Changes when fits do: earlier results are then made again.
+constexpr int fit_version = 2;
 
 double mean_psnr(const std::vector<HeldOutView>& views, const std::function<Image(const View&)>& draw) {
   double sum = 0;
@@ -35,33 +38,51 @@ double mean_psnr(const std::vector<HeldOutView>& views, const std::function<Imag
   return sum / static_cast<double>(views.size());
 }
 
-// Measures the curve of a fit while it is fitted.
+using Clock = std::chrono::steady_clock;
+
+double minutes_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count() / 60;
+}
+
+// Measures the curve of a fit during the fit.
 class Budget {
  public:
   Budget(const StudyInput& input, FittedFiles& fitted, std::vector<HeldOutView> views, int most)
       : input_(input), fitted_(fitted), views_(std::move(views)), most_(most) {}
 
-  // Whether doubling `passes` is worth while.
-  bool goes_on(int passes, const std::function<Image(const View&)>& draw) {
+  // Whether to double `passes`. `better`: called if no earlier result was as good.
+  bool goes_on(int passes, const std::function<Image(const View&)>& draw, const std::function<void()>& better) {
+    const auto start = Clock::now();
     const double now = mean_psnr(views_, draw);
     const double gain = fitted_.curve.empty() ? std::numeric_limits<double>::infinity() : now - fitted_.curve.back()[1];
+    if (now > best_) {
+      best_ = now;
+      better();
+    }
+    measuring_ += minutes_since(start);
     fitted_.curve.push_back({static_cast<double>(passes), now});
     fitted_.passes = passes;
     input_.say(fmt::format("{}, {}: {:.2f} dB after {} {}", fitted_.sample, fitted_.name, now, passes,
                            fitted_.method == Method::mobilenerf ? "epochs" : "passes"));
+    if (gain >= enough_db && 2 * passes > most_)
+      input_.say(
+          fmt::format("warning: {}, {}: the last doubling still gained {:.2f} dB", fitted_.sample, fitted_.name, gain));
     return gain >= enough_db && 2 * passes <= most_;
   }
   template <class Volume>
-  bool goes_on_with(int passes, const Volume& volume) {
+  bool goes_on_with(int passes, const Volume& volume, std::optional<Volume>& best) {
     MarchedVolume drawing(volume, input_.renderer().context());
-    return goes_on(passes, [&](const View& view) { return drawing.picture(view); });
+    return goes_on(
+        passes, [&](const View& view) { return drawing.picture(view); }, [&] { best = volume; });
   }
+  double minutes_of_measuring() const { return measuring_; }
 
  private:
   const StudyInput& input_;
   FittedFiles& fitted_;
   std::vector<HeldOutView> views_;
   int most_;
+  double best_ = -std::numeric_limits<double>::infinity(), measuring_ = 0;
 };
 
 Scene scene_of(const std::shared_ptr<const BakedObject>& object) {
@@ -72,54 +93,71 @@ Scene scene_of(const std::shared_ptr<const BakedObject>& object) {
 
 void fit_mobilenerf(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth& truth, FittedFiles& fitted,
                     Budget& budget) {
+  std::shared_ptr<const BakedObject> best;
   for (int epochs = first_epochs;; epochs *= 2) {
+    const auto start = Clock::now();
     const auto object = bakery::bake(
         truth.model(), truth.field(),
         {.epochs = epochs, .observations = sizes.views, .texels_per_side = fitted.resolution}, input.progress);
     const Scene scene = scene_of(object);
-    if (budget.goes_on(epochs, [&](const View& view) { return input.renderer().render(scene, view); })) continue;
-    export_scene(scene, fitted.folder / "baked", {}, input.progress);
+    fitted.minutes = minutes_since(start);
+    if (budget.goes_on(
+            epochs, [&](const View& view) { return input.renderer().render(scene, view); }, [&] { best = object; }))
+      continue;
+    export_scene(scene_of(best), fitted.folder / "baked", {}, input.progress);
     return;
   }
 }
 
 void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth& truth, FittedFiles& fitted) {
-  std::vector<HeldOutView> views = truth.held_out(fitted.folder.parent_path());
-  views.resize(std::min<std::size_t>(views.size(), curve_views));
+  std::vector<HeldOutView> views = truth.validation(fitted.folder.parent_path());
   const bool epochs = fitted.method == Method::mobilenerf;
   Budget budget(input, fitted, std::move(views), epochs ? most_epochs : sizes.most_passes);
-  const auto start = std::chrono::steady_clock::now();
   fs::create_directories(fitted.folder);
   if (epochs) {
-    fit_mobilenerf(input, sizes, truth, fitted, budget);
-  } else if (fs::create_directories(fitted.folder / "baked"); fitted.method == Method::snerg) {
-    const SnergScene scene = fit_snerg(
-        truth.rays(), fitted.resolution,
-        [&](int passes, const SnergScene& now) { return budget.goes_on_with(passes, now); }, input.progress);
-    write_snerg(scene, fitted.folder / "baked", {});
-  } else {
-    const PlenOctree tree = fit_plenoctree(
-        truth.rays(), fitted.resolution,
-        [&](int passes, const PlenOctree& now) { return budget.goes_on_with(passes, now); }, input.progress);
-    write_plenoctree(tree, fitted.folder / "baked" / "tree.npz", {});
-    fs::create_directories(fitted.folder / "web");
-    write_quantised_plenoctree(tree, fitted.folder / "web" / "tree.npz", {});
+    truth.field();
+    return fit_mobilenerf(input, sizes, truth, fitted, budget);
   }
-  fitted.minutes = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 60;
+  truth.rays();  // before time counts
+  const auto start = Clock::now();
+  if (fs::create_directories(fitted.folder / "baked"); fitted.method == Method::snerg) {
+    std::optional<SnergScene> best;
+    fit_snerg(
+        truth.rays(), fitted.resolution,
+        [&](int passes, const SnergScene& now) { return budget.goes_on_with(passes, now, best); }, input.progress);
+    fitted.minutes = minutes_since(start) - budget.minutes_of_measuring();
+    write_snerg(*best, fitted.folder / "baked", {});
+  } else {
+    std::optional<PlenOctree> best;
+    fit_plenoctree(
+        truth.rays(), fitted.resolution,
+        [&](int passes, const PlenOctree& now) { return budget.goes_on_with(passes, now, best); }, input.progress);
+    fitted.minutes = minutes_since(start) - budget.minutes_of_measuring();
+    write_plenoctree(*best, fitted.folder / "baked" / "tree.npz", {});
+    fs::create_directories(fitted.folder / "web");
+    write_quantised_plenoctree(*best, fitted.folder / "web" / "tree.npz", {});
+  }
 }
 
-// What fit() found out; written last, so that an interrupted fit is repeated.
-void write_result(const FittedFiles& fitted) {
-  const nlohmann::json result{{"minutes", fitted.minutes}, {"passes", fitted.passes}, {"curve", fitted.curve}};
+std::string text_of(const RepresentationSizes& sizes) {
+  return fmt::format("version {}, {} views of {}² rays, pictures of {}², at most {} passes", fit_version, sizes.views,
+                     sizes.ray_side, sizes.picture, sizes.most_passes);
+}
+
+// The result of fit(); written last, so that an interrupted fit is repeated.
+void write_result(const RepresentationSizes& sizes, const FittedFiles& fitted) {
+  const nlohmann::json result{
+      {"sizes", text_of(sizes)}, {"minutes", fitted.minutes}, {"passes", fitted.passes}, {"curve", fitted.curve}};
   write_file_atomically(fitted.folder / "fit.json", result.dump(), {});
 }
 
-bool read_result(FittedFiles& fitted) {
+bool read_result(const RepresentationSizes& sizes, FittedFiles& fitted) {
   std::error_code error;
   const fs::path file = fitted.folder / "fit.json";
   if (!fs::is_regular_file(file, error)) return false;
   try {
     const nlohmann::json result = nlohmann::json::parse(read_file(file));
+    if (result.at("sizes") != text_of(sizes)) return false;
     fitted.minutes = result.at("minutes");
     fitted.passes = result.at("passes");
     fitted.curve = result.at("curve").get<std::vector<std::array<double, 2>>>();
@@ -131,7 +169,7 @@ bool read_result(FittedFiles& fitted) {
 
 }  // namespace
 
-SampleTruth::SampleTruth(std::string sample, const RepresentationSizes& sizes, const Progress& progress)
+SampleTruth::SampleTruth(const std::string& sample, const RepresentationSizes& sizes, const Progress& progress)
     : model_(procedural_model(sample)), sizes_(sizes), progress_(progress) {}
 
 const bakery::RadianceField& SampleTruth::field() {
@@ -146,19 +184,27 @@ const TruthRays& SampleTruth::rays() {
 }
 
 std::vector<HeldOutView> SampleTruth::held_out(const fs::path& folder) {
-  const auto file = [&](int k) { return folder / fmt::format("truth-{}.png", k); };
+  return traced(held_out_views(model_, sizes_.held_out, sizes_.picture), folder, "truth");
+}
+
+std::vector<HeldOutView> SampleTruth::validation(const fs::path& folder) {
+  return traced(held_out_views(model_, validation_views, sizes_.picture, 1), folder, "validation");
+}
+
+std::vector<HeldOutView> SampleTruth::traced(std::vector<HeldOutView> views, const fs::path& folder,
+                                             const std::string& name) {
   std::error_code error;
   fs::create_directories(folder);
-  std::vector<HeldOutView> views = held_out_views(model_, sizes_.held_out, sizes_.picture);
-  for (int k = 0; k < sizes_.held_out; ++k) {
-    HeldOutView& one = views[static_cast<std::size_t>(k)];
-    if (fs::is_regular_file(file(k), error)) {
-      one.truth = read_image(file(k));
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    HeldOutView& one = views[k];
+    const fs::path file = folder / fmt::format("{}-{}-{}.png", name, sizes_.picture, k);
+    if (fs::is_regular_file(file, error)) {
+      one.truth = read_image(file);
       continue;
     }
-    progress_.at("tracing held-out views", static_cast<double>(k) / sizes_.held_out);
+    progress_.at("tracing held-out views", static_cast<double>(k) / static_cast<double>(views.size()));
     one.truth = field().trace(one.view.camera, one.view.width, one.view.height);
-    write_picture(one.truth, file(k), {});
+    write_picture(one.truth, file, {});
   }
   return views;
 }
@@ -176,9 +222,10 @@ std::vector<FittedFiles> fitted_files(const StudyInput& input, const Representat
     all.push_back({sample, Method::plenoctree, resolution, fmt::format("PlenOctree {}³", resolution),
                    folder / fmt::format("plenoctree-{}", resolution)});
   for (FittedFiles& fitted : all) {
-    if (read_result(fitted)) continue;
+    if (read_result(sizes, fitted)) continue;
+    fitted.curve.clear();
     fit(input, sizes, truth, fitted);
-    write_result(fitted);
+    write_result(sizes, fitted);
   }
   return all;
 }

@@ -24,15 +24,19 @@ struct RepresentationSizes {
 /// The truth of a sample, made when first asked for.
 class SampleTruth {
  public:
-  SampleTruth(std::string sample, const RepresentationSizes& sizes, const Progress& progress);
+  SampleTruth(const std::string& sample, const RepresentationSizes& sizes, const Progress& progress);
 
   const bakery::Model& model() const { return model_; }
   const bakery::RadianceField& field();
   const TruthRays& rays();
   /// Held-out pictures, kept as PNG in `folder`.
   std::vector<HeldOutView> held_out(const std::filesystem::path& folder);
+  /// The same of other cameras, by which fits decide when to stop.
+  std::vector<HeldOutView> validation(const std::filesystem::path& folder);
 
  private:
+  std::vector<HeldOutView> traced(std::vector<HeldOutView> views, const std::filesystem::path& folder,
+                                  const std::string& name);
   bakery::Model model_;
   RepresentationSizes sizes_;
   Progress progress_;
@@ -48,13 +52,14 @@ struct FittedFiles {
   int resolution;                                 ///< of RepresentationSizes
   std::string name;                               ///< such as "SNeRG 128³"
   std::filesystem::path folder;                   ///< its published files are in "baked", a folder
-  double minutes = 0;                             ///< of the fit
+  double minutes = 0;                             ///< of the fit; MobileNeRF: of the last bake
   int passes = 0;                                 ///< epochs for MobileNeRF
   std::vector<std::array<double, 2>> curve = {};  ///< passes or epochs, PSNR in dB of held-out pictures
 };
 
-/// All representations of the sizes; those that `folder` lacks are fitted first. Each is fitted until doubling the
-/// number of passes gains less than 0.2 dB.
+/// All representations of the sizes; those that are missing in `folder` are fitted first. Each is fitted until doubling
+/// the number of passes gains less than 0.2 dB on the validation pictures, or the most passes are reached, which a
+/// warning says; the best result is kept.
 std::vector<FittedFiles> fitted_files(const StudyInput& input, const RepresentationSizes& sizes,
                                       const std::string& sample, SampleTruth& truth,
                                       const std::filesystem::path& folder);

@@ -51,7 +51,7 @@ std::string network_text(const SnergDecoder& decoder) {
 // One byte per 4×4×4 texels of the atlas: whether a trilinear sample within them can have opacity.
 std::vector<std::uint8_t> occupied_texels(const SnergScene& scene, SnergScene::Size& size) {
   constexpr int side = 4;
-  const SnergScene::Size atlas = scene.atlas_size();
+  const SnergScene::Size atlas = scene.atlas;
   for (std::size_t a = 0; a < 3; ++a) size[a] = (atlas[a] + side - 1) / side;
   std::vector<std::uint8_t> occupied(
       static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]), 0);
@@ -78,21 +78,23 @@ Vec3 vector_of(const SnergScene::Size& size) {
 
 MarchedVolume::MarchedVolume(const SnergScene& scene, gl::Context& context) : context_(context) {
   const gl::CurrentContextScope current(context_);
-  program_ = std::make_unique<gl::PixelProgram>("studies/snerg.frag", network_text(scene.decoder));
+  // Destroyed before the context is left, if an upload fails.
+  auto program = std::make_unique<gl::PixelProgram>("studies/snerg.frag", network_text(scene.decoder));
   std::vector<std::uint8_t> places;
   for (const auto& place : scene.block_places) places.insert(places.end(), place.begin(), place.end());
-  program_->add_volume("blocks", 3, scene.blocks(), places.data(), false);
+  program->add_volume("blocks", 3, scene.blocks(), places.data(), false);
   SnergScene::Size coarse{};
   const std::vector<std::uint8_t> occupied = occupied_texels(scene, coarse);
-  program_->add_volume("occupied", 1, coarse, occupied.data(), false);
-  program_->add_volume("colors", 4, scene.atlas_size(), scene.colors.data(), true);
-  program_->add_volume("features", 4, scene.atlas_size(), scene.features.data(), true);
-  program_->set("grid_min", scene.min);
-  program_->set("grid_size", vector_of(scene.grid));
-  program_->set("atlas_size", vector_of(scene.atlas_size()));
-  program_->set("voxel_size", scene.voxel_size);
-  program_->set("block_size", static_cast<double>(scene.block_size));
-  program_->set("world_from_opengl", scene.world_from_opengl);
+  program->add_volume("occupied", 1, coarse, occupied.data(), false);
+  program->add_volume("colors", 4, scene.atlas, scene.colors.data(), true);
+  program->add_volume("features", 4, scene.atlas, scene.features.data(), true);
+  program->set("grid_min", scene.min);
+  program->set("grid_size", vector_of(scene.grid));
+  program->set("atlas_size", vector_of(scene.atlas));
+  program->set("voxel_size", scene.voxel_size);
+  program->set("block_size", static_cast<double>(scene.block_size));
+  program->set("world_from_opengl", scene.world_from_opengl);
+  program_ = std::move(program);
 }
 
 MarchedVolume::MarchedVolume(const PlenOctree& tree, gl::Context& context) : context_(context) {
@@ -118,12 +120,13 @@ MarchedVolume::MarchedVolume(const PlenOctree& tree, gl::Context& context) : con
       }
     }
   if (values.empty()) values.push_back({});
-  program_ = std::make_unique<gl::PixelProgram>(
+  auto program = std::make_unique<gl::PixelProgram>(
       "studies/plenoctree.frag", fmt::format("#define BASIS {}\n#define RECORD {}\n", tree.basis, texels));
-  program_->add_numbers("children", children);
-  program_->add_vectors("values", values);
-  program_->set("tree_offset", tree.offset);
-  program_->set("tree_scale", tree.scale);
+  program->add_numbers("children", children);
+  program->add_vectors("values", values);
+  program->set("tree_offset", tree.offset);
+  program->set("tree_scale", tree.scale);
+  program_ = std::move(program);
 }
 
 MarchedVolume::~MarchedVolume() {

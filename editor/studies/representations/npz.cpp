@@ -91,6 +91,9 @@ NpzArray array_of(const fs::path& file, const std::string& name, std::string byt
   const bool long_header = bytes[6] >= 2;
   const std::size_t begin = long_header ? 12 : 10, length = number_at(bytes, 8, long_header ? 4 : 2);
   if (length > bytes.size() - begin) refuse("is truncated in its header");
+  // NumPy's own limit; longer texts would also overflow the stack of std::regex.
+  constexpr std::size_t longest_header = 10'000;
+  if (length > longest_header) refuse("has an impossible header");
   const std::string header = bytes.substr(begin, length);
   const auto matched = [&](const char* pattern) {
     std::smatch found;
@@ -113,7 +116,8 @@ NpzArray array_of(const fs::path& file, const std::string& name, std::string byt
   }
   if (bytes.size() - begin - length != needed)
     refuse(fmt::format("has {} bytes of elements, but its shape needs {}", bytes.size() - begin - length, needed));
-  array.bytes = bytes.substr(begin + length);
+  bytes.erase(0, begin + length);
+  array.bytes = std::move(bytes);
   return array;
 }
 
@@ -202,11 +206,13 @@ void write_npz(const Npz& arrays, const fs::path& file, const SourceGuard& guard
     append(directory, central_mark, 4);
     append(directory, 20, 2);
     directory += common;
-    append(directory, 0, 2 + 2 + 2 + 4);  // comment, disk, attributes
+    directory.append(2 + 2 + 2 + 4, '\0');  // comment, disk, attributes
     append(directory, archive.size(), 4);
     directory += name;
     append(archive, local_mark, 4);
-    archive += common + name + packed;
+    archive += common;
+    archive += name;
+    archive += packed;
   }
   const std::size_t begin = archive.size();
   archive += directory;

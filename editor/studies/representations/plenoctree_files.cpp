@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t table_size = 65536;
+constexpr int deepest = 16;  // levels; published trees have 10 or fewer
 using Half = Eigen::half;
 using Triple = std::array<float, 3>;
 
@@ -53,20 +54,10 @@ std::vector<T> elements(const fs::path& file, const Npz& arrays, const char* nam
   return values;
 }
 
-// The arrays of both forms except for the values of the leaves.
+// The arrays of both forms.
 Npz common_arrays(const PlenOctree& tree) {
-  const std::size_t nodes = tree.children.size();
-  std::vector<std::int32_t> child, parent_depth(nodes * 2, 0);
-  for (std::size_t n = 0; n < nodes; ++n)
-    for (std::size_t k = 0; k < 8; ++k) {
-      child.push_back(tree.children[n][k]);
-      if (tree.children[n][k] == 0) continue;
-      const std::size_t below = n + static_cast<std::size_t>(tree.children[n][k]);
-      parent_depth[below * 2] = static_cast<std::int32_t>(n * 8 + k);
-      parent_depth[below * 2 + 1] = parent_depth[n * 2 + 1] + 1;
-    }
-  std::int32_t depth = 0;
-  for (std::size_t n = 0; n < nodes; ++n) depth = std::max(depth, parent_depth[n * 2 + 1]);
+  std::vector<std::int32_t> child;
+  for (const auto& children : tree.children) child.insert(child.end(), children.begin(), children.end());
   // Text is UTF-32.
   const std::string format = fmt::format("SH{}", tree.basis);
   std::vector<std::uint32_t> letters(format.begin(), format.end());
@@ -76,14 +67,30 @@ Npz common_arrays(const PlenOctree& tree) {
   Npz arrays;
   arrays["data_dim"] = whole_number(static_cast<std::int64_t>(tree.record()));
   arrays["data_format"] = array_from(fmt::format("<U{}", format.size()).c_str(), {}, letters);
-  arrays["child"] = array_from("<i4", {nodes, 2, 2, 2}, child);
+  arrays["child"] = array_from("<i4", {tree.children.size(), 2, 2, 2}, child);
+  arrays["invradius3"] = array_from("<f4", {3}, floats(tree.scale));
+  arrays["offset"] = array_from("<f4", {3}, floats(tree.offset));
+  return arrays;
+}
+
+// What svox needs to go on with a tree, and a viewer does not.
+void add_arrays_for_training(const PlenOctree& tree, Npz& arrays) {
+  const std::size_t nodes = tree.children.size();
+  std::vector<std::int32_t> parent_depth(nodes * 2, 0);
+  std::int32_t depth = 0;
+  for (std::size_t n = 0; n < nodes; ++n)
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (tree.children[n][k] == 0) continue;
+      const auto below = static_cast<std::size_t>(static_cast<std::int64_t>(n) + tree.children[n][k]);
+      parent_depth[below * 2] = static_cast<std::int32_t>(n * 8 + k);
+      parent_depth[below * 2 + 1] = parent_depth[n * 2 + 1] + 1;
+      depth = std::max(depth, parent_depth[below * 2 + 1]);
+    }
   arrays["parent_depth"] = array_from("<i4", {nodes, 2}, parent_depth);
   arrays["n_internal"] = whole_number(static_cast<std::int64_t>(nodes));
   arrays["n_free"] = whole_number(0);
   arrays["depth_limit"] = whole_number(std::max(10, depth + 1));
-  arrays["invradius3"] = array_from("<f4", {3}, floats(tree.scale));
-  arrays["offset"] = array_from("<f4", {3}, floats(tree.offset));
-  return arrays;
+  arrays["geom_resize_fact"] = array_from("<f8", {}, std::vector<double>{1});
 }
 
 // Colours of a median cut of `colors` into at most table_size boxes, and the box of each.
@@ -142,6 +149,7 @@ void check_tree(const fs::path& file, const std::vector<std::array<std::int32_t,
   if (children.empty()) throw FileError(file, "array \"child\" has no nodes");
   std::vector<bool> reached(children.size(), false);
   reached[0] = true;
+  std::vector<int> depth(children.size(), 1);
   for (std::size_t n = 0; n < children.size(); ++n)
     for (const std::int32_t child : children[n]) {
       if (child == 0) continue;
@@ -152,11 +160,27 @@ void check_tree(const fs::path& file, const std::vector<std::array<std::int32_t,
             fmt::format("array \"child\": node {} has child {}, which is not a node without another parent", n, below));
       reached[static_cast<std::size_t>(below)] = true;
     }
+  // Every node that the root leads to is met once.
+  for (std::vector<std::size_t> open{0}; !open.empty();) {
+    const std::size_t node = open.back();
+    open.pop_back();
+    if (depth[node] > deepest)
+      throw FileError(file,
+                      fmt::format("array \"child\": the tree is deeper than {} levels, which are supported", deepest));
+    for (const std::int32_t child : children[node]) {
+      if (child == 0) continue;
+      const auto below = static_cast<std::size_t>(static_cast<std::int64_t>(node) + child);
+      depth[below] = depth[node] + 1;
+      open.push_back(below);
+    }
+  }
 }
 
 int basis_of(const fs::path& file, const Npz& arrays) {
   const auto found = arrays.find("data_format");
   if (found == arrays.end()) throw FileError(file, "lacks the array \"data_format\"");
+  if (!found->second.type.starts_with("<U") || found->second.bytes.size() > 32)
+    throw FileError(file, "array \"data_format\" must be a short text");
   std::string format;
   for (std::size_t k = 0; k + 3 < found->second.bytes.size(); k += 4)
     if (const char letter = found->second.bytes[k]; letter != 0) format += letter;
@@ -195,6 +219,7 @@ void read_quantised(const fs::path& file, const Npz& arrays, PlenOctree& tree) {
 
 void write_plenoctree(const PlenOctree& tree, const fs::path& file, const SourceGuard& guard) {
   Npz arrays = common_arrays(tree);
+  add_arrays_for_training(tree, arrays);
   arrays["data"] = array_from("<f2", {tree.children.size(), 2, 2, 2, tree.record()}, tree.data);
   write_npz(arrays, file, guard);
 }
@@ -232,6 +257,13 @@ PlenOctree read_plenoctree(const fs::path& file) {
   const Npz arrays = read_npz(file);
   PlenOctree tree;
   tree.basis = basis_of(file, arrays);
+  if (const auto dimension = arrays.find("data_dim");
+      dimension != arrays.end() && dimension->second.bytes.size() == 8) {
+    std::int64_t stated = 0;
+    std::memcpy(&stated, dimension->second.bytes.data(), sizeof stated);
+    if (stated != static_cast<std::int64_t>(tree.record()))
+      throw FileError(file, fmt::format("array \"data_dim\" is {}, but data_format needs {}", stated, tree.record()));
+  }
   const auto child = elements<std::int32_t>(file, arrays, "child", "<i4", {0, 2, 2, 2});
   tree.children.resize(child.size() / 8);
   for (std::size_t n = 0; n < tree.children.size(); ++n)

@@ -102,8 +102,8 @@ class Fit {
       const bool used = cells_.block_used[static_cast<std::size_t>(
                             ((cell[2] / block) * blocks[1] + cell[1] / block) * blocks[0] + cell[0] / block)] != 0;
       const int side = used ? 1 : block;
-      const Eigen::Vector3f low(static_cast<float>(cell[0] / side * side), static_cast<float>(cell[1] / side * side),
-                                static_cast<float>(cell[2] / side * side));
+      const Eigen::Vector3f low =
+          Eigen::Vector3i(cell[0] / side * side, cell[1] / side * side, cell[2] / side * side).cast<float>();
       const float end = std::max(t, range(low, static_cast<float>(side)).second) + nudge;
       if (const std::int32_t number = used ? cells_.number_at(cell[0], cell[1], cell[2]) : -1; number >= 0) {
         const auto occupied = static_cast<std::size_t>(number);

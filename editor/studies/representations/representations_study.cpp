@@ -33,7 +33,7 @@ double megabytes_in(const fs::path& folder) {
   return bytes / megabyte;
 }
 
-// Something that draws pictures and says how long it took and what memory it holds.
+// Draws pictures; time of a frame; memory on the GPU.
 struct Drawn {
   std::function<Image(const View&)> picture;
   std::function<double(const View&)> milliseconds;
@@ -68,7 +68,7 @@ double median_frame(const Drawn& drawn, const View& view, int frames) {
   return times[static_cast<std::size_t>(frames / 2)];
 }
 
-// Draws what lies in a folder or file. `use` gets it while it is on the GPU.
+// Draws the contents of a folder or file. `use` gets them while they are on the GPU.
 class Drawer {
  public:
   explicit Drawer(const StudyInput& input) : input_(input) {}
@@ -155,10 +155,11 @@ class Run {
   }
 
   void given(const std::string& name, double megabytes, const View& view, const Drawn& drawn) {
+    const double milliseconds = median_frame(drawn, view, input_.frames);
+    input_.say(fmt::format("{}: {:.1f} ms per frame, {:.1f} MB on the GPU, {:.1f} MB on disk", name, milliseconds,
+                           drawn.gpu_megabytes, megabytes));
     table_.rows.push_back(
-        {name,
-         {median_frame(drawn, view, input_.frames), none, drawn.gpu_megabytes, megabytes, none, none, none, none, none},
-         name});
+        {name, {milliseconds, none, drawn.gpu_megabytes, megabytes, none, none, none, none, none}, name});
   }
 
   void write_curves(const fs::path& own) const {

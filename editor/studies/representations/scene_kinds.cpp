@@ -70,10 +70,10 @@ TruthRays traced_rays(const bakery::Model& model, const bakery::RadianceField& f
   return result;
 }
 
-std::vector<HeldOutView> held_out_views(const bakery::Model& model, int count, int side) {
+std::vector<HeldOutView> held_out_views(const bakery::Model& model, int count, int side, int after) {
   std::vector<HeldOutView> result;
   for (int k = 0; k < count; ++k) {
-    const int camera = k * held_out_cameras / count;
+    const int camera = (k * held_out_cameras / count + after) % held_out_cameras;
     View view;
     view.camera = model.camera((camera + 0.5) / held_out_cameras, std::fmod(0.5 + camera * golden, 1.0));
     view.width = view.height = side;

@@ -45,7 +45,8 @@ struct HeldOutView {
   Image truth;  ///< empty until it is traced
 };
 
-/// Views of `side`² pixels from `count` of the 20 held-out cameras of the sample bakery.
-std::vector<HeldOutView> held_out_views(const bakery::Model& model, int count, int side);
+/// Views of `side`² pixels from `count` of the 20 held-out cameras of the sample bakery, `after` cameras after the
+/// usual ones.
+std::vector<HeldOutView> held_out_views(const bakery::Model& model, int count, int side, int after = 0);
 
 }  // namespace rebake

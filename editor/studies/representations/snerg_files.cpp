@@ -19,6 +19,9 @@ namespace {
 
 constexpr int planes_per_picture = 4;
 constexpr int largest_side = 16384;
+// The network becomes the text of a shader, in single precision. Published networks are 16 wide.
+constexpr Eigen::Index widest = 64;
+constexpr double largest_weight = 1e6;
 
 std::size_t product(const SnergScene::Size& size) {
   return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
@@ -77,14 +80,14 @@ class Fields {
     const json& value = at(name);
     if (!value.is_array() || static_cast<Eigen::Index>(value.size()) != rows || rows == 0) wrong(name, expected);
     if (columns < 0) columns = value[0].is_array() ? static_cast<Eigen::Index>(value[0].size()) : 0;
-    if (columns < 1 || columns > 1024) wrong(name, expected);
+    if (columns < 1 || columns > widest) wrong(name, fmt::format("{}, at most {} per row", expected, widest));
     Eigen::MatrixXd result(rows, columns);
     for (Eigen::Index r = 0; r < rows; ++r) {
       const json& row = value[static_cast<std::size_t>(r)];
       if (!row.is_array() || static_cast<Eigen::Index>(row.size()) != columns) wrong(name, expected);
       for (Eigen::Index c = 0; c < columns; ++c) {
         const json& entry = row[static_cast<std::size_t>(c)];
-        if (!entry.is_number() || !std::isfinite(entry.get<double>())) wrong(name, expected);
+        if (!entry.is_number() || !(std::abs(entry.get<double>()) < largest_weight)) wrong(name, expected);
         result(r, c) = entry.get<double>();
       }
     }
@@ -97,7 +100,7 @@ class Fields {
     Eigen::VectorXd result(size);
     for (Eigen::Index k = 0; k < size; ++k) {
       const json& entry = value[static_cast<std::size_t>(k)];
-      if (!entry.is_number() || !std::isfinite(entry.get<double>())) wrong(name, expected);
+      if (!entry.is_number() || !(std::abs(entry.get<double>()) < largest_weight)) wrong(name, expected);
       result[k] = entry.get<double>();
     }
     return result;
@@ -119,7 +122,7 @@ Image picture_of(const fs::path& file, int width, int height, AlphaChannel alpha
 
 // RGBA bytes of picture `name`_000.png and so on.
 std::vector<std::uint8_t> planes(const fs::path& folder, const char* name, const SnergScene& scene) {
-  const auto [width, height, depth] = scene.atlas_size();
+  const auto [width, height, depth] = scene.atlas;
   std::vector<std::uint8_t> texels;
   for (int z = 0; z < depth; z += planes_per_picture) {
     const fs::path file = folder / fmt::format("{}_{:03}.png", name, z / planes_per_picture);
@@ -137,7 +140,7 @@ std::vector<std::uint8_t> planes(const fs::path& folder, const char* name, const
 
 void write_planes(const std::vector<std::uint8_t>& texels, const char* name, const SnergScene& scene,
                   const fs::path& folder, const SourceGuard& guard) {
-  const auto [width, height, depth] = scene.atlas_size();
+  const auto [width, height, depth] = scene.atlas;
   const auto plane = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   for (int z = 0; z < depth; z += planes_per_picture) {
     Image image{width, height * planes_per_picture, {}, {}};
@@ -156,13 +159,13 @@ void write_planes(const std::vector<std::uint8_t>& texels, const char* name, con
 }  // namespace
 
 void write_snerg(const SnergScene& scene, const fs::path& folder, const SourceGuard& guard) {
-  const auto [width, height, depth] = scene.atlas_size();
-  json turn = json::array();
+  const auto [width, height, depth] = scene.atlas;
+  json rotation = json::array();
   for (Eigen::Index r = 0; r < 4; ++r) {
     json row = json::array();
     for (Eigen::Index c = 0; c < 4; ++c)
       row.push_back(r < 3 && c < 3 ? scene.world_from_opengl(r, c) : r == c ? 1.0 : 0.0);
-    turn.push_back(std::move(row));
+    rotation.push_back(std::move(row));
   }
   const json parameters{{"voxel_size", scene.voxel_size},
                         {"block_size", scene.block_size},
@@ -179,7 +182,7 @@ void write_snerg(const SnergScene& scene, const fs::path& folder, const SourceGu
                         {"atlas_blocks_x", scene.atlas_blocks[0]},
                         {"atlas_blocks_y", scene.atlas_blocks[1]},
                         {"atlas_blocks_z", scene.atlas_blocks[2]},
-                        {"worldspace_T_opengl", turn},
+                        {"worldspace_T_opengl", rotation},
                         {"ndc", false},
                         {"0_weights", rows_of(scene.decoder.weights0)},
                         {"1_weights", rows_of(scene.decoder.weights1)},
@@ -210,11 +213,12 @@ SnergScene read_snerg(const fs::path& folder) {
                 fields.whole("grid_depth", largest_side)};
   scene.atlas_blocks = {fields.whole("atlas_blocks_x", 255), fields.whole("atlas_blocks_y", 255),
                         fields.whole("atlas_blocks_z", 255)};
-  const auto atlas = scene.atlas_size();
+  const auto needed = scene.atlas_needed();
   for (std::size_t a = 0; a < 3; ++a) {
     static constexpr const char* names[] = {"atlas_width", "atlas_height", "atlas_depth"};
-    if (fields.whole(names[a], largest_side) != atlas[a])
-      fields.wrong(names[a], fmt::format("{}, the number of blocks times (block_size + 2)", atlas[a]));
+    scene.atlas[a] = fields.whole(names[a], largest_side);
+    if (scene.atlas[a] < needed[a])
+      fields.wrong(names[a], fmt::format("at least {}, the number of blocks times (block_size + 2)", needed[a]));
   }
   scene.min = {fields.number("min_x"), fields.number("min_y"), fields.number("min_z")};
   scene.world_from_opengl = fields.matrix("worldspace_T_opengl", 4, 4).topLeftCorner<3, 3>();

@@ -60,7 +60,9 @@ class Fit {
       // Rates fall as the inverse root of the passes.
       const double rate = 1 / std::sqrt(1.0 + number);
       adam_.step(end - begin, rate, [](float* values) {
-        for (std::size_t c = 0; c < snerg_channels; ++c) values[c] = std::clamp(values[c], 0.0F, 1.0F);
+        // Premultiplied values are at most the opacity.
+        values[snerg_alpha] = std::clamp(values[snerg_alpha], 0.0F, 1.0F);
+        for (std::size_t c = 0; c < snerg_alpha; ++c) values[c] = std::clamp(values[c], 0.0F, values[snerg_alpha]);
       });
       network_.step(end - begin, rate);
     }
@@ -144,10 +146,14 @@ class Fit {
       for (std::size_t c = 0; c < 7; ++c) sum[c] += sample.light * sample.value[c];
     for (std::size_t c = 0; c < 3; ++c) sum[c] += rest;
     SnergNetwork::Pass pass;
-    const std::array<float, 3> added = network_.forward(ray.direction, sum, pass);
+    const bool decodes = rest <= 1 - darkest;  // as the viewer does
+    const std::array<float, 3> added = decodes ? network_.forward(ray.direction, sum, pass) : std::array<float, 3>{};
     std::array<float, 3> error{};
-    for (std::size_t c = 0; c < 3; ++c) error[c] = 2 * (sum[c] + added[c] - ray.color[c]);
-    std::array<float, 7> slope = network_.backward(lane, pass, error);
+    for (std::size_t c = 0; c < 3; ++c) {
+      error[c] = 2 * (sum[c] + added[c] - ray.color[c]);
+      if (ray.color[c] >= 1) error[c] = std::min(error[c], 0.0F);  // colours are clamped
+    }
+    std::array<float, 7> slope = decodes ? network_.backward(lane, pass, error) : std::array<float, 7>{};
     for (std::size_t c = 0; c < 3; ++c) slope[c] += error[c];
     // What light that passes a sample adds to the loss, from the last sample on.
     float behind = slope[0] + slope[1] + slope[2];

@@ -38,7 +38,9 @@ std::vector<bool> occupied_blocks(const VoxelCells& cells, const std::vector<std
 SnergScene::Size atlas_for(std::size_t count) {
   const auto wanted = static_cast<double>(std::max<std::size_t>(count, 1));
   const int x = static_cast<int>(std::ceil(std::cbrt(wanted))), y = static_cast<int>(std::ceil(std::sqrt(wanted / x)));
-  return {x, y, static_cast<int>(std::ceil(wanted / x / y))};
+  // Blocks with padding are 10, 18 or 34 voxels: an even number of them makes whole pictures of four planes.
+  const int z = static_cast<int>(std::ceil(wanted / x / y));
+  return {x, y, z + z % 2};
 }
 
 // How many bytes the atlas and the places of blocks take.
@@ -47,7 +49,7 @@ double memory(const SnergScene::Size& atlas, int block, std::size_t blocks) {
 }
 
 void write_voxel(SnergScene& scene, const std::array<int, 3>& voxel, const Bytes& bytes) {
-  const SnergScene::Size blocks = scene.blocks(), atlas = scene.atlas_size();
+  const SnergScene::Size blocks = scene.blocks(), atlas = scene.atlas;
   const int padded = scene.block_size + 2;
   for_blocks_of(voxel, scene.block_size, blocks, [&](int x, int y, int z) {
     const auto& place = scene.block_places[block_index(blocks, x, y, z)];
@@ -92,6 +94,7 @@ SnergScene pack_snerg(const VoxelCells& cells, const std::function<const float*(
       used = std::move(occupied);
     }
   }
+  scene.atlas = scene.atlas_needed();
   scene.block_places.assign(used.size(), {255, 255, 255});
   int next = 0;
   for (std::size_t b = 0; b < used.size(); ++b) {
@@ -101,7 +104,7 @@ SnergScene pack_snerg(const VoxelCells& cells, const std::function<const float*(
                              static_cast<std::uint8_t>(next / (x * y))};
     ++next;
   }
-  const SnergScene::Size atlas = scene.atlas_size();
+  const SnergScene::Size atlas = scene.atlas;
   const auto texels =
       static_cast<std::size_t>(atlas[0]) * static_cast<std::size_t>(atlas[1]) * static_cast<std::size_t>(atlas[2]);
   scene.colors.assign(4 * texels, 0);

@@ -25,7 +25,7 @@ SnergScene::Size SnergScene::blocks() const {
   return result;
 }
 
-SnergScene::Size SnergScene::atlas_size() const {
+SnergScene::Size SnergScene::atlas_needed() const {
   Size result{};
   for (std::size_t a = 0; a < 3; ++a) result[a] = atlas_blocks[a] * (block_size + 2);
   return result;

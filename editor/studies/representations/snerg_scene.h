@@ -33,13 +33,14 @@ struct SnergScene {
   Vec3 min = Vec3::Zero();
   Mat3 world_from_opengl = Mat3::Identity();  ///< rotates directions for the network
   Size atlas_blocks{};
+  Size atlas{};                                           ///< voxels; at least atlas_blocks · (block_size + 2)
   std::vector<std::array<std::uint8_t, 3>> block_places;  ///< per block, x fastest: its place in the atlas; 255: empty
   std::vector<std::uint8_t> colors;                       ///< RGBA per voxel of the atlas, premultiplied, x fastest
   std::vector<std::uint8_t> features;                     ///< 4 per voxel of the atlas, premultiplied
   SnergDecoder decoder;
 
-  Size blocks() const;      ///< numbers of blocks of the grid
-  Size atlas_size() const;  ///< voxels
+  Size blocks() const;        ///< numbers of blocks of the grid
+  Size atlas_needed() const;  ///< atlas_blocks · (block_size + 2)
 };
 
 }  // namespace rebake

@@ -169,6 +169,18 @@ TEST(PlenOctreeDrawing, SeesFromInside) {
   EXPECT_GT(compare(MarchedVolume(tree, *context).picture(view), reference_picture(tree, view), 2).psnr_db, 50);
 }
 
+TEST(PlenOctreeDrawing, EndsFarFromAFineTree) {
+  // Parameters of single precision that count from the eye would not advance from leaf to leaf.
+  const PlenOctree tree = random_tree(1, 9, 9);
+  const auto context = gl::make_headless_context();
+  View view = view_of_tree();
+  view.width = view.height = 24;
+  view.camera.eye = Vec3(600, 350, 700);
+  view.camera.fov_degrees = 0.2;
+  view.camera.far_plane = 2000;
+  EXPECT_GT(compare(MarchedVolume(tree, *context).picture(view), reference_picture(tree, view), 2).psnr_db, 30);
+}
+
 class PlenOctreeFiles : public testing::Test {
  protected:
   void expect_refusal(const Npz& arrays, const std::string& why) const {
@@ -254,9 +266,26 @@ TEST_F(PlenOctreeFiles, AreRefusedIfTheyLie) {
     expect_refusal(wrong, "\"child\"");
   }
   wrong = good;
+  wrong["data_dim"].bytes[0] = 27;
+  expect_refusal(wrong, "data_dim");
+  wrong = good;
+  wrong["data_format"].type = "<f4";
+  expect_refusal(wrong, "data_format");
+  // std::regex would overflow the stack.
+  wrong = good;
+  wrong["offset"].type = "<f4" + std::string(40'000, ' ');
+  expect_refusal(wrong, "\"offset\"");
+  wrong = good;
   wrong["data"].bytes[1] = '\x7c';  // an infinity in half precision
   wrong["data"].bytes[0] = '\0';
   expect_refusal(wrong, "finite");
+}
+
+TEST_F(PlenOctreeFiles, AreRefusedIfTheTreeIsTooDeep) {
+  tree_ = {1, Vec3::Zero(), Vec3::Ones(), {}, {}};
+  for (int level = 0; level < 40; ++level) tree_.children.push_back({level < 39 ? 1 : 0});
+  tree_.data.assign(tree_.children.size() * 8 * tree_.record(), Eigen::half(1));
+  expect_refusal(written(), "deeper than 16");
 }
 
 TEST_F(PlenOctreeFiles, AreRefusedWhereverTheyAreCutOrFlipped) {

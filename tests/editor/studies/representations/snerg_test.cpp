@@ -123,7 +123,7 @@ class SnergReference {
     const Vec3 block = (at / scene_.block_size).array().floor();
     const auto* where = place(block);
     if (where == nullptr) return value;
-    const auto atlas = scene_.atlas_size();
+    const auto atlas = scene_.atlas;
     std::size_t index = 0;
     for (int a = 2; a >= 0; --a) {
       const auto axis = static_cast<std::size_t>(a);
@@ -222,6 +222,8 @@ TEST_F(SnergFiles, KeepEverything) {
   EXPECT_EQ(read.grid, scene_.grid);
   EXPECT_EQ(read.min, scene_.min);
   EXPECT_EQ(read.atlas_blocks, scene_.atlas_blocks);
+  EXPECT_EQ(read.atlas, scene_.atlas);
+  EXPECT_EQ(read.atlas[2] % 4, 0) << "the published viewer uploads whole pictures of four planes";
   EXPECT_EQ(read.block_places, scene_.block_places);
   EXPECT_EQ(read.colors, scene_.colors);
   EXPECT_EQ(read.features, scene_.features);
@@ -272,6 +274,18 @@ TEST_F(SnergFiles, AreRefusedIfABlockLiesOutsideTheAtlas) {
 TEST_F(SnergFiles, AreRefusedIfWeightsHaveAnotherShape) {
   replace_in_parameters("\"0_weights\":[[", "\"0_weights\":[[1.5,");
   expect_refusal("scene_params.json", "0_weights");
+}
+
+TEST_F(SnergFiles, AreRefusedIfTheNetworkIsTooWideOrItsWeightsTooLarge) {
+  scene_.decoder.weights1 = Eigen::MatrixXd::Zero(16, 65);
+  scene_.decoder.bias1 = Eigen::VectorXd::Zero(65);
+  scene_.decoder.weights2 = Eigen::MatrixXd::Zero(65, 3);
+  write_snerg(scene_, folder_, {});
+  expect_refusal("scene_params.json", "at most 64");
+  scene_ = ball_of_voxels(24);
+  scene_.decoder.bias2[1] = 1e300;
+  write_snerg(scene_, folder_, {});
+  expect_refusal("scene_params.json", "2_bias");
 }
 
 TEST_F(SnergFiles, AreRefusedInNormalisedDeviceCoordinates) {
