@@ -238,8 +238,8 @@ StudyTable study_representations(const StudyInput& input) {
   input.say("driver: " + input.renderer().device());
   input.say(input.quick
                 ? "one scene at small sizes: about 3 minutes on two cores"
-                : "three scenes, three methods, three resolutions: about 30 minutes on two cores; what is fitted "
-                  "stays in the output folder, so the study can be stopped and started again");
+                : "three scenes, three methods, three resolutions: about 30 minutes on two cores; finished fits "
+                  "stay in the output folder, so the study can be stopped and started again");
   // Files that were given are read first, so that faults in them show at once.
   const fs::path own = own_folder(input, input.quick ? "representations-quick" : "representations");
   Run run(input, sizes, table);

@@ -111,7 +111,7 @@ class Fields {
   json fields_;
 };
 
-// A picture of this size. Throws FileError with what it is for.
+// A picture of this size. Throws FileError for another one.
 Image picture_of(const fs::path& file, int width, int height, AlphaChannel alpha) {
   Image image = read_image(file, alpha);
   if (image.width != width || image.height != height)
