@@ -108,8 +108,7 @@ inline constexpr Study study_table[] = {
     {"training", "training from photographs: steps, grid size, losses; time, size and error", study_training},
     {"dprt", "deep precomputed radiance transfer as published, against linear models, rotation and tracing",
      study_dprt},
-    {"representations", "MobileNeRF, SNeRG and PlenOctrees: time, memory, size and error",
-     study_representations},
+    {"representations", "MobileNeRF, SNeRG and PlenOctrees: time, memory, size and error", study_representations},
     {"limits", "MobileNeRF's limits: close-ups, semi-transparent parts, surfaces seen from the side", study_limits},
     {"fill", "filled holes: size, error of place and colours, time", study_fill},
 };
