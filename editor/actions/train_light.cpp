@@ -27,7 +27,9 @@ std::vector<std::string> deformations_of(const Document& document, NodeId node) 
   return lines;
 }
 
-TransferModelOptions options_of(const TrainLightAction& action) {
+}  // namespace
+
+TransferModelOptions training_options(const TrainLightAction& action) {
   const auto within = [](const char* field, double value, double low, double high) {
     if (!(value >= low && value <= high)) throw FieldError(field, fmt::format("must lie between {} and {}", low, high));
   };
@@ -49,8 +51,6 @@ TransferModelOptions options_of(const TrainLightAction& action) {
   return options;
 }
 
-}  // namespace
-
 std::vector<std::filesystem::path> TrainLightAction::input_files(const nlohmann::json& object) {
   std::vector<std::filesystem::path> files;
   const auto edits = object.find("edits");
@@ -65,7 +65,7 @@ std::vector<std::filesystem::path> TrainLightAction::input_files(const nlohmann:
 }
 
 void run(Session& session, const TrainLightAction& action) {
-  const TransferModelOptions options = options_of(action);
+  const TransferModelOptions options = training_options(action);
   const Scene& scene = session.scene();
   const NodePtr node = action.node ? find(scene, action.node->id) : object_for_light_model(scene, "");
   if (!node || !node->object) throw FieldError("node", "has no object");
@@ -76,20 +76,19 @@ void run(Session& session, const TrainLightAction& action) {
                      fmt::format("is missing, and no deformation of \"{}\" is in the history: bend it first, or "
                                  "give edits that move it",
                                  node->name));
-  if (!action.out.empty()) {
-    SourceGuard sources = session.document.sources();
-    for (const std::string& line : edits)
-      for (const auto& file :
-           TrainLightAction::input_files({{"edits", nlohmann::json::array({nlohmann::json::parse(line)})}}))
-        sources.add_file(file, "a file that an edit reads");
+  SourceGuard sources = session.document.sources();
+  for (const std::string& line : edits)
+    for (const auto& file :
+         TrainLightAction::input_files({{"edits", nlohmann::json::array({nlohmann::json::parse(line)})}}))
+      sources.add_file(file, "a file that an edit reads");
+  if (!action.out.empty())
     check_light_model_output(action.out, sources);
-  }
-  if (action.out.empty() && !result_cache())
+  else if (!result_cache())
     throw FieldError("out", "is missing: name a file, because the result cache is off (REBAKE_RESULTS is empty)");
   const TransferModel model = trained_light_model(scene, node, edits, options, session.progress);
   for (const std::string& fact : facts_of(model)) session.say(fact);
   if (!action.out.empty()) {
-    write_file_atomically(action.out, bytes_of(model), session.document.sources());
+    write_file_atomically(action.out, bytes_of(model), sources);
     session.outputs.push_back(action.out);
   }
   if (!worth_using(model)) {

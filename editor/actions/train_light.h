@@ -8,6 +8,7 @@
 #include "editor/actions/action.h"
 #include "editor/actions/session.h"
 #include "editor/fields/values.h"
+#include "mesh_ops/light/train_transfer_model.h"
 
 namespace rebake {
 
@@ -29,6 +30,9 @@ template <>
 const ActionType& action_type<TrainLightAction>();
 template <>
 TrainLightAction read_action<TrainLightAction>(const nlohmann::json& object, const Scene& scene);
+
+/// Size and effort of the training. Throws FieldError for values out of range.
+TransferModelOptions training_options(const TrainLightAction& action);
 
 /// Throws FieldError, FileError, and Error for objects without drag light; see trained_light_model().
 void run(Session& session, const TrainLightAction& action);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/actions/light_model.h"
+#include "editor/actions/train_light.h"
 #include "editor/cli/options.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
@@ -24,10 +25,9 @@ struct Options {
   std::string action;
   std::vector<std::string> paths;
   std::vector<std::string> edits;
-  std::string node, out, way = "linear";
+  std::string node;
+  TrainLightAction training;  // without node and edits
   FolderOptions reading;
-  int poses = 200, rays = 128, channels = 8;
-  double coarseness = TransferModelOptions{}.coarseness;
 };
 
 void say(const TransferModel& model) {
@@ -42,9 +42,8 @@ void keep(const TransferModel& model, const Scene& scene, const std::string& fil
 void train(const Options& options) {
   for (const std::string& path : options.paths)
     if (!std::filesystem::exists(path)) throw FileError(path, "does not exist");
-  if (options.channels % 8 != 0) throw FieldError("channels", "must be a multiple of 8");
-  if (!(options.coarseness >= 0.005 && options.coarseness <= 0.5))
-    throw FieldError("coarseness", "must lie between 0.005 and 0.5");
+  const TransferModelOptions learning = training_options(options.training);
+  const std::string& out = options.training.out;
   if (options.edits.empty())
     throw FieldError("edit",
                      "is missing: give an edit that moves the object, such as '{\"op\": \"bend\", \"degrees\": 60, "
@@ -55,29 +54,21 @@ void train(const Options& options) {
     for (const ScriptInput& input : edit.is_object() ? script_inputs(edit.dump(), {}) : std::vector<ScriptInput>())
       protect_input(sources, input.path, "a file that this run reads");
   }
-  if (!options.out.empty()) {
-    check_light_model_output(options.out, sources);
+  if (!out.empty()) {
+    check_light_model_output(out, sources);
   } else if (!result_cache()) {
     throw FieldError("out", "is missing: name a file, because the result cache is off (REBAKE_RESULTS is empty)");
   }
   const NodePtr node = object_for_light_model(scene, options.node);
-  TransferModelOptions learning;
-  learning.poses = options.poses;
-  learning.rays = options.rays;
-  learning.coarseness = options.coarseness;
-  if (options.way == "net") {
-    learning.net.emplace();
-    learning.net->channels = options.channels;
-  }
   const TransferModel model = trained_light_model(scene, node, options.edits, learning, progress_bar());
   clear_progress_bar();
   say(model);
-  if (!options.out.empty()) write_file_atomically(options.out, bytes_of(model), sources);
+  if (!out.empty()) write_file_atomically(out, bytes_of(model), sources);
   if (!worth_using(model)) {
     const std::string why = "it is no better than rotating the transfer, which drags use without a model";
-    if (options.out.empty()) throw Error("the model is not stored: " + why);
+    if (out.empty()) throw Error("the model is not stored: " + why);
     fmt::print("not stored: {}\n", why);
-  } else if (options.out.empty() || result_cache()) {
+  } else if (out.empty() || result_cache()) {
     keep(model, scene, {});
   }
 }
@@ -107,21 +98,21 @@ void describe_light(SubcommandDescription& command) {
                  "scale their strength by -1 to 1",
                  "JSON...");
   command.option("--node", options->node, "train: the object; default: the only one", "NAME");
-  command.option("--poses", options->poses, "train: number of poses, 8 to 2000", "N [200]").between(8, 2000);
-  command.option("--rays", options->rays, "train: rays per site, 16 to 16384", "N [128]").between(16, 16384);
+  command.option("--poses", options->training.poses, "train: number of poses, 8 to 2000", "N [200]").between(8, 2000);
+  command.option("--rays", options->training.rays, "train: rays per site, 16 to 16384", "N [128]").between(16, 16384);
   command
-      .option("--way", options->way,
+      .option("--way", options->training.way,
               "train: model; linear in the pose, or net: a U-Net on a geometry image of a proxy body", "linear|net")
       .one_of(std::vector<std::string>{"linear", "net"});
   command
-      .option("--channels", options->channels, "train, net: channels of the first layer, a multiple of 8 up to 64",
-              "N [8]")
+      .option("--channels", options->training.channels,
+              "train, net: channels of the first layer, a multiple of 8 up to 64", "N [8]")
       .between(8, 64);
-  command.option("--coarseness", options->coarseness,
+  command.option("--coarseness", options->training.coarseness,
                  "train, net: coarseness of the proxy body relative to the object's diagonal; coarser if the body "
                  "would split into parts",
                  "SHARE [0.03]");
-  command.option("-o,--out", options->out, "train: also write the model to this file", "FILE");
+  command.option("-o,--out", options->training.out, "train: also write the model to this file", "FILE");
   options->reading.add_to(command);
   command.footer(
       "A model improves the shading during drags near the trained poses, compared with rotating the transfer. It is "

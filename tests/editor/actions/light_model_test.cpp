@@ -1,4 +1,4 @@
-// Models of light transfer: training, use, removal, and what is refused.
+// Models of light transfer: training, use, removal and refusals.
 #include "editor/actions/light_model.h"
 
 #include <gtest/gtest.h>

@@ -16,6 +16,7 @@
 #include "editor/edits/select/select_triangles.h"
 #include "editor/edits/support.h"
 #include "editor/gui/state/editor_context.h"
+#include "editor/gui/state/lost_work.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
 #include "tests/support/made_scenes.h"
@@ -235,6 +236,19 @@ TEST_F(EditorContextTest, TitlesAreImmutable) {
   EXPECT_EQ(editor->status, "Undid: Renamed to \"crate\"");
   EXPECT_EQ(editor->now->steps[3].title, "Renamed to \"crate\"");
   EXPECT_EQ(editor->now->steps_done, 3U);
+}
+
+TEST_F(EditorContextTest, AJournalCutInItsFirstLinesIsShownAndKept) {
+  editor->project.begin_journal();
+  wait();
+  const std::filesystem::path whole = editor->now->journal, cut = whole.parent_path() / "cut.journal";
+  const std::string bytes = read_file(whole);
+  ASSERT_GT(bytes.size(), 40U);
+  write_text(cut, bytes.substr(0, bytes.find('\n') / 2));
+  std::filesystem::last_write_time(cut, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  const std::vector<LostWork> found = lost_work();
+  EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const LostWork& work) { return work.journal == cut; }));
+  EXPECT_TRUE(std::filesystem::exists(cut));
 }
 
 TEST_F(EditorContextTest, AnEditThatRunsWhileAProjectIsOpenedGoesToTheTrash) {

@@ -113,5 +113,23 @@ TEST(TracedFrames, GoOnFromTheirCache) {
   EXPECT_EQ(traced_frames(other, side, rays, start, {}).transfer, traced_frames(other, side, rays, {}, {}).transfer);
 }
 
+TEST(TracedFrames, NeverWriteThroughLinks) {
+  constexpr int side = 16, rays = 4;
+  AnimatedObject object = animated_head(500);
+  object.frames.resize(2);
+  const test::TemporaryFolder folder;
+  const std::filesystem::path source = folder.path() / "source.obj";
+  traced_frames(object, side, rays, folder.path() / "head", {});
+  const std::filesystem::path cache = *std::filesystem::directory_iterator(folder.path());
+  for (const bool hard : {false, true}) {
+    std::filesystem::remove(cache);
+    test::write_text(source, "mine");
+    hard ? std::filesystem::create_hard_link(source, cache) : std::filesystem::create_symlink(source, cache);
+    traced_frames(object, side, rays, folder.path() / "head", {});
+    EXPECT_EQ(read_file(source), "mine");
+    EXPECT_GT(std::filesystem::file_size(cache), 100U);
+  }
+}
+
 }  // namespace
 }  // namespace rebake

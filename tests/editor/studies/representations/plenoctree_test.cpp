@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <numbers>
 #include <random>
 
 #include "editor/studies/representations/marched_volume.h"
@@ -13,6 +12,7 @@
 #include "mesh_ops/base/files.h"
 #include "render/compare.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/marched_picture.h"
 
 namespace rebake {
 namespace {
@@ -122,22 +122,8 @@ View view_of_tree() {
 
 Image reference_picture(const PlenOctree& tree, const View& view) {
   const TreeReference reference(tree);
-  Image image{view.width, view.height, {}, {}};
-  const Mat3 to_world = world_to_camera(view.camera).transpose();
-  const double up = std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180),
-               right = up * view.width / view.height;
-  for (int y = 0; y < view.height; ++y)
-    for (int x = 0; x < view.width; ++x) {
-      Color sum = Color::Zero();
-      for (int s = 0; s < 4; ++s) {
-        const Vec3 at(((x + s % 2 * 0.5 + 0.25) / view.width * 2 - 1) * right,
-                      (1 - (y + s / 2 * 0.5 + 0.25) / view.height * 2) * up, -1);
-        sum += reference.march(view.camera.eye, (to_world * at).normalized()) / 4;
-      }
-      for (Eigen::Index c = 0; c < 3; ++c)
-        image.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(sum[c], 0.0, 1.0))));
-    }
-  return image;
+  return test::marched_picture(view,
+                               [&](const Vec3& eye, const Vec3& direction) { return reference.march(eye, direction); });
 }
 
 class PlenOctreeDrawing : public testing::TestWithParam<int> {};

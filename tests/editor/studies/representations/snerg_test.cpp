@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <numbers>
 #include <random>
 
 #include "editor/studies/representations/marched_volume.h"
@@ -13,6 +12,7 @@
 #include "mesh_ops/base/files.h"
 #include "render/compare.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/marched_picture.h"
 
 namespace rebake {
 namespace {
@@ -149,28 +149,6 @@ class SnergReference {
   const SnergScene& scene_;
 };
 
-// The picture of a march, averaged over the samples of each pixel.
-template <class March>
-Image marched_on_cpu(const View& view, const March& march) {
-  Image image{view.width, view.height, {}, {}};
-  const Mat3 to_world = world_to_camera(view.camera).transpose();
-  const double up = std::tan(view.camera.fov_degrees / 2 * std::numbers::pi / 180),
-               right = up * view.width / view.height;
-  for (int y = 0; y < view.height; ++y)
-    for (int x = 0; x < view.width; ++x) {
-      Color sum = Color::Zero();
-      for (int s = 0; s < view.samples; ++s) {
-        const double u = (x + (s % view.side() + 0.5) / view.side()) / view.width * 2 - 1,
-                     v = 1 - (y + (s / view.side() + 0.5) / view.side()) / view.height * 2;
-        const Vec3 direction = (to_world * Vec3(u * right, v * up, -1)).normalized();
-        sum += march(view.camera.eye, direction).cwiseMin(1) / view.samples;
-      }
-      for (Eigen::Index c = 0; c < 3; ++c)
-        image.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(sum[c], 0.0, 1.0))));
-    }
-  return image;
-}
-
 TEST(SnergDrawing, AgreesWithAMarchInDoublePrecision) {
   const SnergScene scene = ball_of_voxels(40);
   ASSERT_TRUE(std::any_of(scene.block_places.begin(), scene.block_places.end(),
@@ -179,8 +157,8 @@ TEST(SnergDrawing, AgreesWithAMarchInDoublePrecision) {
   MarchedVolume drawing(scene, *context);
   const View view = view_of_ball();
   const SnergReference reference(scene);
-  const Image expected =
-      marched_on_cpu(view, [&](const Vec3& eye, const Vec3& direction) { return reference.march(eye, direction); });
+  const Image expected = test::marched_picture(
+      view, [&](const Vec3& eye, const Vec3& direction) { return reference.march(eye, direction); });
   const Difference difference = compare(drawing.picture(view), expected, 2);
   EXPECT_GT(difference.psnr_db, 50) << "largest " << difference.largest << " at " << difference.x << ", "
                                     << difference.y;

@@ -7,6 +7,7 @@
 #include "editor/studies/representations/plenoctree_fit.h"
 #include "editor/studies/representations/snerg_fit.h"
 #include "render/compare.h"
+#include "tests/support/marched_picture.h"
 
 namespace rebake {
 namespace {
@@ -49,24 +50,12 @@ View view_of_fit() {
   return view;
 }
 
-Image truth_of_ball(const View& view) {
-  Image image{view.width, view.height, {}, {}};
-  const Mat3 to_world = world_to_camera(view.camera).transpose();
-  const double extent = std::tan(view.camera.fov_degrees / 2 * 3.141592653589793 / 180);
-  for (int y = 0; y < view.height; ++y)
-    for (int x = 0; x < view.width; ++x) {
-      Color sum = Color::Zero();
-      for (int s = 0; s < 16; ++s) {
-        const Vec3 at(((x + s % 4 * 0.25 + 0.125) / view.width * 2 - 1) * extent,
-                      (1 - (y + s / 4 * 0.25 + 0.125) / view.height * 2) * extent, -1);
-        const Vec3 direction = (to_world * at).normalized();
-        const auto distance = distance_to_ball(view.camera.eye, direction);
-        sum += distance ? color_of_ball(view.camera.eye + *distance * direction, direction) : Color(Color::Ones());
-      }
-      for (Eigen::Index c = 0; c < 3; ++c)
-        image.rgb.push_back(static_cast<std::uint8_t>(std::lround(255 * sum[c] / 16)));
-    }
-  return image;
+Image truth_of_ball(View view) {
+  view.samples = 16;
+  return test::marched_picture(view, [](const Vec3& eye, const Vec3& direction) -> Color {
+    const auto distance = distance_to_ball(eye, direction);
+    return distance ? color_of_ball(eye + *distance * direction, direction) : Color(Color::Ones());
+  });
 }
 
 // PSNR after 1, 2 and 4 passes; the last picture.
