@@ -104,8 +104,10 @@ void recover(const Recovery& options) {
     if (options.keep || undone > 0 || recovered.skipped_undone > 0) return;
     if (recovered.journal)
       recovered.journal->discard();
-    else
+    else if (recovered.document.keeps_journal())
       recovered.document.discard_journal();
+    else
+      print_message("note: the journal may not be written, so it stays");
     return;
   }
   print_message("the journal is not removed, because these lines could not be recovered:");

@@ -106,7 +106,7 @@ std::vector<JournalLine> lines_to_replay(const Journal::Contents& contents, cons
 
 Document::Recovered Document::recover(const fs::path& path, const SourceLinks& links, const Progress& progress) {
   Journal::Contents contents;
-  Journal journal = Journal::resume(path, contents);
+  std::optional<Journal> journal = Journal::resume(path, contents);
   Recovered result;
   History& history = result.document.history_;
   result.torn = contents.torn;
@@ -212,6 +212,7 @@ void Document::protect_files_of(const json& edit) {
 }
 
 void Document::keep_journal(const fs::path& path) {
+  if (path.empty()) throw FieldError("path", "must not be empty: name the journal's file");
   if (!starts_empty_)
     throw Error("a journal needs a document that began empty: begin with an empty scene and import its contents");
   std::vector<json> entries;

@@ -128,7 +128,8 @@ struct Document::Recovered {
   std::vector<SourcesUnavailable::Source> gone;  ///< missing or changed sources of lost edits
   /// The first 20 of `lost`, and the number of the others.
   std::vector<std::string> first_lost() const;
-  std::optional<Journal> journal;  ///< the file, if the document does not continue to write it
+  /// The file, if the document does not continue to write it; empty if it may not be written, as on read-only media.
+  std::optional<Journal> journal;
 };
 
 }  // namespace rebake

@@ -250,9 +250,26 @@ Journal Journal::create(const fs::path& path, const std::vector<json>& entries) 
   return journal;
 }
 
-Journal Journal::resume(const fs::path& path, Contents& contents) {
+namespace {
+
+// Whether the system refuses to write a file, as on read-only media.
+bool is_write_protected(const fs::path& path) {
+  const int descriptor = file_calls().open(path.c_str(), O_RDWR | O_CLOEXEC, 0);
+  if (descriptor < 0) return errno == EROFS || errno == EACCES || errno == EPERM;
+  file_calls().close(descriptor);
+  return false;
+}
+
+}  // namespace
+
+std::optional<Journal> Journal::resume(const fs::path& path, Contents& contents) {
   if (std::error_code error; !fs::is_regular_file(path, error))
     throw FileError(path, "does not exist, or is not a file");
+  if (is_write_protected(path)) {
+    if (in_use(path)) throw FileError(path, "is in use by another Rebake process");
+    contents = read(path);
+    return std::nullopt;
+  }
   Journal journal(std::make_unique<File>(path, O_RDWR));
   contents = journal.file_->resume();
   return journal;

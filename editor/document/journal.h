@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,9 @@ class Journal {
   /// contain unsaved work) or cannot be written.
   static Journal create(const std::filesystem::path& path, const std::vector<nlohmann::json>& entries);
   /// Opens a journal for appending; the first append removes a torn last line. A damaged journal is left unchanged and
-  /// refuses further entries. Locks the file. Throws FileError as read() does, and if another process has locked it.
-  static Journal resume(const std::filesystem::path& path, Contents& contents);
+  /// refuses further entries. Locks the file. Returns nothing, but reads the contents, if the file may not be written,
+  /// as on read-only media. Throws FileError as read() does, and if another process has locked it.
+  static std::optional<Journal> resume(const std::filesystem::path& path, Contents& contents);
 
   ~Journal();
   Journal(Journal&&) noexcept;

@@ -41,20 +41,17 @@ std::string without_scale(const fs::path& folder) {
   return last != std::string::npos && last + 1 < name.size() && name[last] == '_' ? name.substr(0, last) : name;
 }
 
-// A picture is taken for a photograph or mask if the cameras name it, or another one in its folder.
+// A picture is taken for a photograph or mask if the cameras name it, or another one in its folder. One that Rebake
+// rendered, as into a folder of photographs, must be named by the cameras.
 void refuse_replacing_photographs(const fs::path& path, const fs::path& folder) {
   std::error_code error;
-  const bool is_picture = is_picture_file(path);
+  const bool is_rendered = is_rendered_picture(path), is_picture = !is_rendered && is_picture_file(path);
   const std::string place = without_scale(fs::weakly_canonical(folder, error));
-  for (const fs::path& file : captured_files_at(folder))
+  for (const fs::path& file : captured_files_at(folder, is_rendered ? named_photographs : capture_files))
     if (fs::equivalent(file, path, error) ||
         (is_picture && without_scale(fs::weakly_canonical(file.parent_path(), error)) == place))
       throw FileError(path, "belongs to a capture: photographs or masks are in its folder; name another folder");
 }
-
-}  // namespace
-
-namespace {
 
 // Pictures among those of a film would count as the film's when it goes on.
 void refuse_replacing_film(const fs::path& path) {
@@ -80,7 +77,7 @@ void refuse_replacing_work(const fs::path& path) {
     for (const fs::path& file : format->files(folder))
       if (fs::equivalent(folder / file, path, error))
         throw FileError(path, "is a file of the scene in its folder; name another file");
-  if (!is_rendered_picture(path)) refuse_replacing_photographs(path, folder);
+  refuse_replacing_photographs(path, folder);
 }
 
 void refuse_replacing_foreign(const fs::path& path) {

@@ -140,7 +140,7 @@ constexpr Format table[] = {
     {nerf2mesh_format, "nerf2mesh", "only scenes of such folders", "mlp.json", true, true, is_nerf2mesh_folder,
      read_nerf2mesh, nerf2mesh_files, write_nerf2mesh, &nerf2mesh_folder},
     {"obj", "OBJ", "textured meshes", obj_extension, false, true, is_single_file<obj_extension>,
-     read_single_file<read_obj_object>, obj_files, nullptr, nullptr},
+     read_single_file<read_obj_object>, obj_files, nullptr, nullptr, obj_unread_files},
     {"gltf", "glTF", "meshes of mean colours, for modelling programs", glb_extension, false, false,
      is_single_file<glb_extension>, read_glb, gltf_files, write_gltf, nullptr},
     {"gltf_features", "glTF with features", "as gltf, with everything that Rebake needs to read the same scene back",

@@ -43,6 +43,8 @@ struct Format {
     std::set<std::string> (*own_folders)(const std::filesystem::path& folder);  ///< names of the folders in it
   };
   const Folder* folder;
+  /// Further files that belong to a single file and are protected with it, relative to its folder; may be null.
+  std::vector<std::filesystem::path> (*unread_files)(const std::filesystem::path& file) = nullptr;
 };
 
 std::span<const Format> formats();

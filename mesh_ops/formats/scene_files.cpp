@@ -129,6 +129,8 @@ void protect_input(SourceGuard& guard, const fs::path& path, const std::string& 
   guard.add_file(path, role);
   try {
     for (const fs::path& file : scene_files(path)) guard.add_file(path.parent_path() / file, role);
+    if (const Format* const format = format_at(path); format != nullptr && format->unread_files != nullptr)
+      for (const fs::path& file : format->unread_files(path)) guard.add_file(path.parent_path() / file, role);
   } catch (const Error&) {
     // A damaged file is protected itself; reading it reports the damage.
   }

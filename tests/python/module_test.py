@@ -162,6 +162,10 @@ class Module(unittest.TestCase):
         project = rebake.open(self.at / "p.rebake")
         np.testing.assert_allclose(project.nodes[0]["to_world"][:3, 3], [0, 1, 0])
 
+    def test_a_journal_needs_a_name(self):
+        with self.assertRaisesRegex(rebake.Error, "path"):
+            self.document.keep_journal("")
+
     def test_saving_does_not_replace_a_project_with_more_edits(self):
         self.document.transform(node="ficus", translate=[0, 1, 0])
         self.document.save(self.at / "p.rebake")

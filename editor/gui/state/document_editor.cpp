@@ -275,7 +275,10 @@ std::vector<std::optional<NodeRef>> DocumentEditor::scope(bool selected) const {
 }
 
 bool DocumentEditor::in_scope(const PlacedNode& placed) const {
-  if (!placed.visible || placed.locked) return false;
+  return placed.visible && !placed.locked && is_picked(placed);
+}
+
+bool DocumentEditor::is_picked(const PlacedNode& placed) const {
   bool inside = active.empty() || active.contains(placed.node->id);
   for (NodeId up = parent_of(scene(), placed.node->id); up != NodeId::none && !inside; up = parent_of(scene(), up))
     inside = active.contains(up);
@@ -300,13 +303,17 @@ std::vector<NodeId> DocumentEditor::selected_out_of_scope() const {
 }
 
 std::string DocumentEditor::selected_words() const {
-  std::size_t all = 0;
-  for (const auto& [node, triangles] : selected_) all += triangles;
-  if (all == 0) return "";
-  const std::size_t here = selected_triangles();
+  std::size_t here = 0, untouchable = 0, elsewhere = 0;
+  for (const PlacedNode& placed : placed_nodes(scene())) {
+    const auto found = selected_.find(placed.node->id);
+    if (found == selected_.end()) continue;
+    (in_scope(placed) ? here : is_picked(placed) ? untouchable : elsewhere) += found->second;
+  }
+  if (here + untouchable + elsewhere == 0) return "";
   std::string words = fmt::format("{} selected", here);
   if (!active.empty()) words += " " + scope_words();
-  if (all > here) words += fmt::format(", {} elsewhere", all - here);
+  if (untouchable > 0) words += fmt::format(", {} hidden or locked", untouchable);
+  if (elsewhere > 0) words += fmt::format(", {} elsewhere", elsewhere);
   return words;
 }
 

@@ -95,7 +95,7 @@ struct DocumentEditor {
   std::size_t selected_triangles() const;
   /// Nodes outside scope() that have selected triangles: not picked, hidden or locked.
   std::vector<NodeId> selected_out_of_scope() const;
-  /// "313 selected in kettle, 9312 elsewhere"; empty if nothing is selected.
+  /// "313 selected in kettle, 12 hidden or locked, 9312 elsewhere"; empty if nothing is selected.
   std::string selected_words() const;
   /// The last selection edit, if it selected only visible triangles in a picture; else null.
   const SelectPicture* last_visible_selection() const;
@@ -126,7 +126,10 @@ struct DocumentEditor {
   /// Title of the step that undo (steps < 0) or redo reaches, or "N steps" for several.
   std::string title_of_steps(int steps) const;
   std::optional<PreviewRequest> asked_;  ///< the last requested preview
+  /// Picked, visible and not locked.
   bool in_scope(const PlacedNode& placed) const;
+  /// Whether it is in a picked node, or nothing is picked.
+  bool is_picked(const PlacedNode& placed) const;
   std::map<NodeId, std::size_t> selected_;  ///< number of selected triangles per node, without zeros
   bool at_rest_ = false;
   std::vector<std::function<void()>> finished_;  ///< callbacks of ended jobs

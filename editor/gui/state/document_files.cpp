@@ -69,17 +69,29 @@ void keep_journal(Document& document) {
   const fs::path folder = journal_folder();
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) throw FileError(folder, "cannot be created, so there is no crash recovery: " + failed.message());
+  if (failed) throw FileError(folder, "cannot be created: " + failed.message());
   const auto since = std::chrono::system_clock::now().time_since_epoch();
   document.keep_journal(folder / fmt::format("{}-{}.journal",
                                              std::chrono::duration_cast<std::chrono::milliseconds>(since).count(),
                                              ::getpid()));
 }
 
+// Begins a journal if it can. Returns why not, for the user; empty: done.
+std::string try_keep_journal(Document& document) {
+  try {
+    keep_journal(document);
+    return "";
+  } catch (const Error& error) {
+    return fmt::format("there is no crash recovery ({})", error.what());
+  }
+}
+
 }  // namespace
 
 void Project::begin_journal() {
-  worker_.start("journal", [](Session& session) { keep_journal(session.document); });
+  worker_.start("journal", [](Session& session) {
+    if (const std::string missing = try_keep_journal(session.document); !missing.empty()) throw Error(missing);
+  });
 }
 
 void Project::open(const std::vector<std::string>& paths, bool wanted, const Import& options) {
@@ -113,11 +125,12 @@ void Project::open_project(const fs::path& file, const SourceLinks& links) {
       [file, links, gone, asked = now_->scene](Session& session) {
         try {
           Document opened = Document::open(file, links, session.progress);
-          keep_journal(opened);
+          const std::string missing = try_keep_journal(opened);
           // A job that ran when the user asked may have changed the document since.
           if (const std::string said = replace_document(session, std::move(opened), !same_work(session.scene(), asked));
               !said.empty())
             session.say(said);
+          if (!missing.empty()) session.say(missing);
         } catch (const SourcesUnavailable& moved) {
           *gone = moved.sources;  // the user is asked for new paths
         }
@@ -144,12 +157,13 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
         Document::Recovered recovered = Document::recover(journal, links, session.progress);
         *gone = recovered.gone;
         if (!gone->empty() && !go_on_without) return;  // the user is asked for new paths
-        if (!recovered.document.keeps_journal()) keep_journal(recovered.document);
+        const std::string missing = recovered.document.keeps_journal() ? "" : try_keep_journal(recovered.document);
         // A job that ran when the user asked may have changed the document since.
         const std::string kept =
             replace_document(session, std::move(recovered.document), was_unsaved || !same_work(session.scene(), asked));
         std::string said = fmt::format("{} edits recovered", recovered.edits);
         if (!kept.empty()) said += "; " + kept;
+        if (!missing.empty()) said += "; " + missing;
         if (recovered.torn) said += "; the last edit was incomplete when the editor ended and is lost";
         if (recovered.skipped_undone > 0)
           said +=
@@ -158,7 +172,7 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
         session.say(said);
         if (recovered.lost.empty()) {
           // Otherwise the new journal holds everything.
-          if (recovered.journal && recovered.skipped_undone == 0) recovered.journal->discard();
+          if (recovered.journal && recovered.skipped_undone == 0 && missing.empty()) recovered.journal->discard();
           return;
         }
         *problem = fmt::format("not everything could be recovered; {} was kept:", journal.string());
@@ -207,6 +221,9 @@ void Project::save(const fs::path& file, Document::OtherProject other) {
       [file, other, saved, warnings](Session& session) {
         *warnings = session.document.save(file, session.progress, other);
         *saved = session.scene();
+        // Perhaps the folder of journals can be written by now.
+        if (!session.document.keeps_journal())
+          if (std::string missing = try_keep_journal(session.document); !missing.empty()) warnings->push_back(missing);
       },
       [this, file, saved, warnings] {
         path = file;

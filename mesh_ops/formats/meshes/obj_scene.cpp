@@ -61,6 +61,25 @@ std::map<std::string, Material> read_mtl(const fs::path& folder, const fs::path&
   return materials;
 }
 
+// The pictures that an MTL file names with any key, such as map_Bump with options before the name, as far as they
+// exist.
+std::vector<fs::path> named_pictures(const fs::path& folder, const fs::path& name) {
+  std::vector<fs::path> pictures;
+  std::istringstream lines(read_file(folder / name));
+  for (std::string line; std::getline(lines, line);) {
+    line = trimmed(line);
+    if (line.starts_with('#') || line.starts_with("newmtl")) continue;
+    for (std::size_t at = line.find_first_of(" \t"); at != std::string::npos; at = line.find_first_of(" \t", at + 1)) {
+      const std::string rest = trimmed(line.substr(at));
+      std::error_code error;
+      if (rest.empty() || !fs::is_regular_file(folder / rest, error)) continue;
+      pictures.emplace_back(rest);
+      break;
+    }
+  }
+  return pictures;
+}
+
 struct ObjFile {
   ObjMesh mesh;
   std::vector<fs::path> libraries;
@@ -137,6 +156,17 @@ std::vector<fs::path> obj_files(const fs::path& file) {
   for (const std::string& name : read.mesh.materials)
     if (const auto found = read.materials.find(name); found != read.materials.end() && found->second.image)
       files.push_back(*found->second.image);
+  return files;
+}
+
+std::vector<fs::path> obj_unread_files(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  std::vector<fs::path> files;
+  for (const std::string& library : read_obj(read_file(file), file, {true, true}).libraries) {
+    std::error_code error;
+    if (const fs::path name = path_beside(folder, library, file); fs::is_regular_file(folder / name, error))
+      for (fs::path& picture : named_pictures(folder, name)) files.push_back(std::move(picture));
+  }
   return files;
 }
 

@@ -202,6 +202,11 @@ TEST_F(Guards, RenderedPhotographsAreNotReplacedButOwnPicturesAre) {
   const std::string render = "render " + kettle + " --cameras {}/cap/transforms.json -o {}/";
   EXPECT_EQ(program(render + "cap/images"), 1);
   EXPECT_EQ(read_file(path("cap/images/0.png")), photograph);
+  // Nor by a single picture, under the name that the cameras give; other names are free.
+  EXPECT_EQ(program("render " + kettle + " -o {}/cap/images/0.png --size 8x8"), 1);
+  EXPECT_EQ(read_file(path("cap/images/0.png")), photograph);
+  for (int run = 0; run < 2; ++run)
+    EXPECT_EQ(program("render " + kettle + " -o {}/cap/images/test.png --size 8x8"), 0) << log();
   for (int run = 0; run < 2; ++run) EXPECT_EQ(program(render + "cap/renders"), 0) << log();
   write("edited/0.png", "\x89PNG of somebody else");
   EXPECT_EQ(program(render + "edited"), 1);
@@ -239,6 +244,19 @@ TEST_F(Guards, FilesBesideMeshesAreProtected) {
   EXPECT_EQ(program("run {}/s.jsonl"), 1);
   EXPECT_NE(log().find("is a file that this script reads"), std::string::npos) << log();
   EXPECT_EQ(read_file(path("obj/m.mtl")), before);
+}
+
+TEST_F(Guards, PicturesThatMaterialsNameAreProtectedEvenIfNotRead) {
+  fs::create_directories(path("obj"));
+  write("obj/m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");
+  write("obj/m.mtl",
+        "newmtl a\nKd 1 0 0\nmap_d opacity.png\nmap_Bump -bm 0.5 the bumps.png\nnewmtl unused\nnorm n.png\n");
+  for (const std::string name : {"opacity.png", "the bumps.png", "n.png", "other.png"}) {
+    write("obj/" + name, "\x89PNG of somebody");
+    const bool is_named = name != "other.png";
+    EXPECT_EQ(program("render {}/obj/m.obj -o \"{}/obj/" + name + "\" --size 8x8"), is_named ? 1 : 0) << log();
+    EXPECT_EQ(read_file(path("obj/" + name)) == "\x89PNG of somebody", is_named) << name;
+  }
 }
 
 TEST_F(Guards, ProjectsOfLinkedFilesOpen) {

@@ -1,5 +1,6 @@
 // Recovery of work: damaged journals and projects, moved sources, files behind links. Files are removed only after
 // their replacement is on the disk.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include "editor/document/document.h"
 #include "editor/document/project.h"
 #include "editor/edits/nodes/view.h"
+#include "mesh_ops/base/file_calls.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/export.h"
@@ -233,6 +235,26 @@ TEST_F(Recovery, JournalBegunAfterUndoRecoversRedoneEdits) {
 }
 
 // Undone steps that could be redone are said to be left out.
+TEST_F(Recovery, RecoversFromReadOnlyMedia) {
+  class ReadOnly final : public FileCalls {
+   public:
+    int open(const char* path, int flags, mode_t mode) override {
+      if ((flags & O_ACCMODE) == O_RDONLY) return FileCalls::open(path, flags, mode);
+      errno = EROFS;
+      return -1;
+    }
+  };
+  const std::string bytes = journal(3);
+  ReadOnly calls;
+  const ReplacedFileCalls replaced(calls);
+  const Document::Recovered recovered = Document::recover(path("journal"));
+  EXPECT_EQ(recovered.edits, 4U);
+  EXPECT_TRUE(recovered.lost.empty());
+  EXPECT_FALSE(recovered.document.keeps_journal());
+  EXPECT_FALSE(recovered.journal);
+  EXPECT_EQ(read_file(path("journal")), bytes);
+}
+
 TEST_F(Recovery, CountsUndoneStepsThatCannotBeRecovered) {
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/second"), {});
   {

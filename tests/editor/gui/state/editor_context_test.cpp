@@ -238,6 +238,45 @@ TEST_F(EditorContextTest, TitlesAreImmutable) {
   EXPECT_EQ(editor->now->steps_done, 3U);
 }
 
+TEST_F(EditorContextTest, SelectionsOfHiddenPickedNodesAreNamedSo) {
+  editor->active.clear();
+  Select all;
+  all.all = true;
+  editor->edit_scope(all);
+  wait();
+  Hide hide;
+  hide.node = NodeRef{id("box")};
+  editor->edit(hide);
+  wait();
+  editor->active = {id("box")};
+  EXPECT_EQ(editor->selected_words(), "0 selected in box, 64 hidden or locked, 64 elsewhere");
+  editor->active = {id("ball")};
+  EXPECT_EQ(editor->selected_words(), "64 selected in ball, 64 elsewhere");
+  editor->active.clear();
+  EXPECT_EQ(editor->selected_words(), "64 selected, 64 hidden or locked");
+}
+
+TEST_F(EditorContextTest, ProjectsOpenWithoutAFolderForJournals) {
+  const std::filesystem::path project = home.path() / "p.rebake";
+  editor->project.save(project);
+  wait();
+  editor->jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+  wait();
+  std::filesystem::remove_all(journal_folder());
+  std::filesystem::create_directories(journal_folder().parent_path());
+  write_text(journal_folder(), "a file where the folder should be");
+  editor->project.open({project.string()});
+  wait();
+  EXPECT_EQ(editor->project.path, project);
+  EXPECT_NE(editor->messages.log().back().text.find("there is no crash recovery"), std::string::npos)
+      << editor->messages.log().back().text;
+  // Saving begins a journal as soon as that is possible.
+  std::filesystem::remove(journal_folder());
+  editor->project.save(project);
+  wait();
+  EXPECT_FALSE(std::filesystem::is_empty(journal_folder()));
+}
+
 TEST_F(EditorContextTest, AJournalCutInItsFirstLinesIsShownAndKept) {
   editor->project.begin_journal();
   wait();
