@@ -2,9 +2,17 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace rebake {
+
+double fit_rate(double passes) {
+  const double doublings = std::log2(std::max(passes, 1.0));
+  // Share of the doubling that is done; all of the first pass counts as one.
+  const double done = passes < 1 ? passes : passes / std::exp2(std::floor(doublings)) - 1;
+  return std::pow(10, -std::max(0.0, 2 * done - 1)) / std::sqrt(1 + passes);
+}
 
 CellAdam::CellAdam(std::size_t cells, std::vector<float> rates)
     : channels_(rates.size()),

@@ -12,6 +12,11 @@ namespace rebake {
 /// Rays per step: few for small sets, so that a pass has about 64 steps or more.
 inline std::size_t batch_size(std::size_t rays) { return std::clamp<std::size_t>(rays / 64, 256, 8192); }
 
+/// Factor of the learning rate after `passes` over the rays. It falls as the inverse root of the passes, and in the
+/// second half of each doubling (from 1 to 2, 2 to 4, …) to a tenth of that: results are taken at the doublings, where
+/// the rate is low, after which it rises again (Loshchilov and Hutter 2017, warm restarts).
+double fit_rate(double passes);
+
 /// Adam (Kingma and Ba 2015) on values per cell, of which each step changes only the cells that a batch touches. A
 /// batch is divided among `lanes` parts with gradients of their own, so that results do not depend on the number of
 /// threads.

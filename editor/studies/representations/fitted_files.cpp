@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -30,7 +30,7 @@ constexpr double enough_db = 0.2;  // a doubling that gains less is the last
 constexpr int first_epochs = 10, most_epochs = 160;
 constexpr int validation_views = 2;
 // Changes when fits do: earlier results are then made again.
-constexpr int fit_version = 2;
+constexpr int fit_version = 3;
 
 double mean_psnr(const std::vector<HeldOutView>& views, const std::function<Image(const View&)>& draw) {
   double sum = 0;
@@ -38,11 +38,8 @@ double mean_psnr(const std::vector<HeldOutView>& views, const std::function<Imag
   return sum / static_cast<double>(views.size());
 }
 
-using Clock = std::chrono::steady_clock;
-
-double minutes_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count() / 60;
-}
+// Minutes of all processors that this process has used; other programs do not count.
+double processor_minutes() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC / 60; }
 
 // Measures the curve of a fit during the fit.
 class Budget {
@@ -52,14 +49,14 @@ class Budget {
 
   // Whether to double `passes`. `better`: called if no earlier result was as good.
   bool goes_on(int passes, const std::function<Image(const View&)>& draw, const std::function<void()>& better) {
-    const auto start = Clock::now();
+    const double start = processor_minutes();
     const double now = mean_psnr(views_, draw);
     const double gain = fitted_.curve.empty() ? std::numeric_limits<double>::infinity() : now - fitted_.curve.back()[1];
     if (now > best_) {
       best_ = now;
       better();
     }
-    measuring_ += minutes_since(start);
+    measuring_ += processor_minutes() - start;
     fitted_.curve.push_back({static_cast<double>(passes), now});
     fitted_.passes = passes;
     input_.say(fmt::format("{}, {}: {:.2f} dB after {} {}", fitted_.sample, fitted_.name, now, passes,
@@ -95,12 +92,12 @@ void fit_mobilenerf(const StudyInput& input, const RepresentationSizes& sizes, S
                     Budget& budget) {
   std::shared_ptr<const BakedObject> best;
   for (int epochs = first_epochs;; epochs *= 2) {
-    const auto start = Clock::now();
+    const double start = processor_minutes();
     const auto object = bakery::bake(
         truth.model(), truth.field(),
         {.epochs = epochs, .observations = sizes.views, .texels_per_side = fitted.resolution}, input.progress);
     const Scene scene = scene_of(object);
-    fitted.minutes = minutes_since(start);
+    fitted.minutes = processor_minutes() - start;
     if (budget.goes_on(
             epochs, [&](const View& view) { return input.renderer().render(scene, view); }, [&] { best = object; }))
       continue;
@@ -119,20 +116,20 @@ void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth&
     return fit_mobilenerf(input, sizes, truth, fitted, budget);
   }
   truth.rays();  // before time counts
-  const auto start = Clock::now();
+  const double start = processor_minutes();
   if (fs::create_directories(fitted.folder / "baked"); fitted.method == Method::snerg) {
     std::optional<SnergScene> best;
     fit_snerg(
         truth.rays(), fitted.resolution,
         [&](int passes, const SnergScene& now) { return budget.goes_on_with(passes, now, best); }, input.progress);
-    fitted.minutes = minutes_since(start) - budget.minutes_of_measuring();
+    fitted.minutes = processor_minutes() - start - budget.minutes_of_measuring();
     write_snerg(*best, fitted.folder / "baked", {});
   } else {
     std::optional<PlenOctree> best;
     fit_plenoctree(
         truth.rays(), fitted.resolution,
         [&](int passes, const PlenOctree& now) { return budget.goes_on_with(passes, now, best); }, input.progress);
-    fitted.minutes = minutes_since(start) - budget.minutes_of_measuring();
+    fitted.minutes = processor_minutes() - start - budget.minutes_of_measuring();
     write_plenoctree(*best, fitted.folder / "baked" / "tree.npz", {});
     fs::create_directories(fitted.folder / "web");
     write_quantised_plenoctree(*best, fitted.folder / "web" / "tree.npz", {});

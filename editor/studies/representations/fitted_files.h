@@ -52,7 +52,7 @@ struct FittedFiles {
   int resolution;                                 ///< of RepresentationSizes
   std::string name;                               ///< such as "SNeRG 128³"
   std::filesystem::path folder;                   ///< its published files are in "baked", a folder
-  double minutes = 0;                             ///< of the fit; MobileNeRF: of the last bake
+  double minutes = 0;                             ///< of processor time for the fit; MobileNeRF: for the last bake
   int passes = 0;                                 ///< epochs for MobileNeRF
   std::vector<std::array<double, 2>> curve = {};  ///< passes or epochs, PSNR in dB of held-out pictures
 };

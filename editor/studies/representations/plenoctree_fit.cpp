@@ -54,8 +54,7 @@ class Fit {
         for (std::size_t k = begin + lane * per_lane; k < std::min(end, begin + (lane + 1) * per_lane); ++k)
           learn(rays_.rays[k], lane, crossings);
       });
-      // Rates fall as the inverse root of the passes.
-      adam_.step(end - begin, 1 / std::sqrt(1.0 + number),
+      adam_.step(end - begin, fit_rate(number + static_cast<double>(begin) / static_cast<double>(rays_.rays.size())),
                  [](float* values) { values[density] = std::max(values[density], 0.0F); });
     }
   }

@@ -225,19 +225,20 @@ RepresentationSizes sizes_of(bool quick) {
 }  // namespace
 
 StudyTable study_representations(const StudyInput& input) {
-  StudyTable table{{"milliseconds per frame", "PSNR dB", "GPU megabytes", "megabytes on disk", "SSIM", "FLIP",
-                    "minutes of fitting", "passes (MobileNeRF: epochs)", "dB gained by the last doubling of passes"},
-                   {},
-                   0,
-                   1,
-                   true,
-                   false,
-                   2};
+  StudyTable table{
+      {"milliseconds per frame", "PSNR dB", "GPU megabytes", "megabytes on disk", "SSIM", "FLIP",
+       "processor minutes of fitting", "passes (MobileNeRF: epochs)", "dB gained by the last doubling of passes"},
+      {},
+      0,
+      1,
+      true,
+      false,
+      2};
   const RepresentationsOptions& options = input.representations;
   const RepresentationSizes sizes = sizes_of(input.quick);
   input.say("driver: " + input.renderer().device());
   input.say(input.quick
-                ? "one scene at small sizes: about 3 minutes on two cores"
+                ? "one scene at small sizes: about half a minute on two cores"
                 : "three scenes, three methods, three resolutions: about 30 minutes on two cores; finished fits "
                   "stay in the output folder, so the study can be stopped and started again");
   // Files that were given are read first, so that faults in them show at once.

@@ -1,5 +1,6 @@
 #include "editor/studies/representations/snerg_fit.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -57,8 +58,7 @@ class Fit {
         for (std::size_t k = begin + lane * per_lane; k < std::min(end, begin + (lane + 1) * per_lane); ++k)
           learn(rays_.rays[k], lane, samples);
       });
-      // Rates fall as the inverse root of the passes.
-      const double rate = 1 / std::sqrt(1.0 + number);
+      const double rate = fit_rate(number + static_cast<double>(begin) / static_cast<double>(rays_.rays.size()));
       adam_.step(end - begin, rate, [](float* values) {
         // Premultiplied values are at most the opacity.
         values[snerg_alpha] = std::clamp(values[snerg_alpha], 0.0F, 1.0F);
@@ -68,12 +68,24 @@ class Fit {
     }
   }
 
-  SnergScene packed() {
+  // The published form, whose network is tuned to the quantised grid, as the paper's is.
+  SnergScene packed(int passes, const Progress& progress) {
     most_seen_.assign(cells_.count(), 0);
     mark_seen();
-    return pack_snerg(
+    std::vector<Values> exact(cells_.count());
+    for (std::size_t cell = 0; cell < cells_.count(); ++cell) {
+      float* value = adam_.values(cell);
+      std::copy_n(value, snerg_channels, exact[cell].begin());
+      for (std::size_t c = 0; c < snerg_channels; ++c)
+        value[c] = most_seen_[cell] >= least_seen ? std::round(value[c] * 255) / 255 : 0;
+    }
+    const SnergNetwork tuned = tuned_network(passes, progress);
+    SnergScene scene = pack_snerg(
         cells_, [&](std::size_t cell) { return most_seen_[cell] >= least_seen ? adam_.values(cell) : nullptr; },
-        network_.decoder());
+        tuned.decoder());
+    for (std::size_t cell = 0; cell < cells_.count(); ++cell)
+      std::copy_n(exact[cell].begin(), snerg_channels, adam_.values(cell));
+    return scene;
   }
 
  private:
@@ -137,22 +149,68 @@ class Fit {
     return true;
   }
 
-  // Adds the gradient of a ray's squared error.
-  void learn(const TruthRay& ray, std::size_t lane, std::vector<Sample>& samples) {
-    const float rest = march(ray, samples);
-    if (samples.empty()) return;
-    std::array<float, 7> sum{};  // colour over white, features
+  // Colour over white, and features, of a ray's samples. `rest`: light that is left.
+  static std::array<float, 7> sum_of(const std::vector<Sample>& samples, float rest) {
+    std::array<float, 7> sum{};
     for (const Sample& sample : samples)
       for (std::size_t c = 0; c < 7; ++c) sum[c] += sample.light * sample.value[c];
     for (std::size_t c = 0; c < 3; ++c) sum[c] += rest;
-    SnergNetwork::Pass pass;
-    const bool decodes = rest <= 1 - darkest;  // as the viewer does
-    const std::array<float, 3> added = decodes ? network_.forward(ray.direction, sum, pass) : std::array<float, 3>{};
+    return sum;
+  }
+
+  // Gradient of a ray's squared error by its colour.
+  static std::array<float, 3> error_of(const TruthRay& ray, const std::array<float, 7>& sum,
+                                       const std::array<float, 3>& added) {
     std::array<float, 3> error{};
     for (std::size_t c = 0; c < 3; ++c) {
       error[c] = 2 * (sum[c] + added[c] - ray.color[c]);
       if (ray.color[c] >= 1) error[c] = std::min(error[c], 0.0F);  // colours are clamped
     }
+    return error;
+  }
+
+  // The network after two more passes with the grid as it is.
+  SnergNetwork tuned_network(int passes, const Progress& progress) const {
+    constexpr int tuning_passes = 2;
+    const std::size_t count = rays_.rays.size(), batch = batch_size(count);
+    // Rays that meet nothing have no light to lose.
+    std::vector<std::pair<std::array<float, 7>, float>> sums(count);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), [&](const tbb::blocked_range<std::size_t>& range) {
+      std::vector<Sample> samples;
+      for (std::size_t k = range.begin(); k < range.end(); ++k) {
+        const float rest = march(rays_.rays[k], samples);
+        sums[k] = {sum_of(samples, rest), rest};
+      }
+    });
+    SnergNetwork network = network_;
+    for (std::size_t first = 0; first < tuning_passes * count; first += batch) {
+      const double done = static_cast<double>(first) / static_cast<double>(tuning_passes * count);
+      progress.at("tuning the network of a SNeRG grid", done);
+      const std::size_t per_lane = (batch + CellAdam::lanes - 1) / CellAdam::lanes;
+      tbb::parallel_for(std::size_t{0}, CellAdam::lanes, [&](std::size_t lane) {
+        SnergNetwork::Pass pass;
+        for (std::size_t k = first + lane * per_lane; k < first + std::min(batch, (lane + 1) * per_lane); ++k) {
+          const auto& [sum, rest] = sums[k % count];
+          const TruthRay& ray = rays_.rays[k % count];
+          if (rest > 1 - darkest) continue;
+          const std::array<float, 3> added = network.forward(ray.direction, sum, pass);
+          network.backward(lane, pass, error_of(ray, sum, added));
+        }
+      });
+      network.step(batch, std::pow(10, -done) / std::sqrt(1.0 + passes));
+    }
+    return network;
+  }
+
+  // Adds the gradient of a ray's squared error.
+  void learn(const TruthRay& ray, std::size_t lane, std::vector<Sample>& samples) {
+    const float rest = march(ray, samples);
+    if (samples.empty()) return;
+    const std::array<float, 7> sum = sum_of(samples, rest);
+    SnergNetwork::Pass pass;
+    const bool decodes = rest <= 1 - darkest;  // as the viewer does
+    const std::array<float, 3> added = decodes ? network_.forward(ray.direction, sum, pass) : std::array<float, 3>{};
+    const std::array<float, 3> error = error_of(ray, sum, added);
     std::array<float, 7> slope = decodes ? network_.backward(lane, pass, error) : std::array<float, 7>{};
     for (std::size_t c = 0; c < 3; ++c) slope[c] += error[c];
     // What light that passes a sample adds to the loss, from the last sample on.
@@ -206,7 +264,7 @@ SnergScene fit_snerg(const TruthRays& rays, int resolution, const std::function<
   Fit fit(rays, resolution);
   for (int passes = 0, next = 1;; next *= 2) {
     for (; passes < next; ++passes) fit.pass(passes, progress);
-    SnergScene scene = fit.packed();
+    SnergScene scene = fit.packed(passes, progress);
     if (!goes_on(passes, scene)) return scene;
   }
 }
