@@ -160,7 +160,7 @@ std::vector<std::string> facts_of(const TransferModel& model) {
       fmt::format("range       up to {:.3g} from the mean pose, {} dimensions; trusted up to {:.1f} times that",
                   model.learned.space.largest * model.learned.space.size, model.learned.space.dimensions(),
                   LearnedTransfer::trusted_range));
-  if (model.net)
+  if (model.has_network())
     lines.push_back(
         fmt::format("error       {:.1f} % of transfer, on held-out poses (rotation alone: {:.1f}; linear: {:.1f})",
                     100 * model.net_error, 100 * model.turning_error, 100 * model.learned.held_back_error));
@@ -171,11 +171,13 @@ std::vector<std::string> facts_of(const TransferModel& model) {
   if (model.net)
     lines.push_back(fmt::format("network     U-Net with {} channels on a {}² image", model.net->state().channels,
                                 model.net->state().side));
-  lines.push_back(
-      fmt::format("size        {} of {} sites, {:.1f} MB", model.keys.size(), model.sites,
-                  static_cast<double>(model.learned.memory() + (model.net ? model.net->memory() : 0)) / 1e6));
+  if (model.published)
+    lines.push_back(fmt::format("network     DPRT as published with {} channels on a {}² image",
+                                model.published->net().net().channels(), model.published->net().net().side()));
+  lines.push_back(fmt::format("size        {} of {} sites, {:.1f} MB", model.keys.size(), model.sites,
+                              static_cast<double>(model.memory()) / 1e6));
   lines.push_back(fmt::format("time        {:.1f} s tracing with {} rays, {:.1f} s training", model.tracing_seconds,
-                              model.rays, model.learned.seconds + (model.net ? model.net->seconds() : 0)));
+                              model.rays, model.training_seconds()));
   return lines;
 }
 

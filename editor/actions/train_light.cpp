@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "editor/actions/describe_action.h"
@@ -16,6 +17,8 @@ namespace rebake {
 
 namespace {
 
+constexpr std::array<const char*, 3> way_names = {"linear", "net", "published"};
+
 // The edits of the history that deform this node.
 std::vector<std::string> deformations_of(const Document& document, NodeId node) {
   std::vector<std::string> lines;
@@ -29,6 +32,16 @@ std::vector<std::string> deformations_of(const Document& document, NodeId node) 
 
 }  // namespace
 
+FieldType Codec<LightModelWay>::type() { return choice_type({way_names.begin(), way_names.end()}); }
+LightModelWay Codec<LightModelWay>::read(const nlohmann::json& value, const Scene&) {
+  for (std::size_t k = 0; k < way_names.size(); ++k)
+    if (value.is_string() && value.get<std::string>() == way_names[k]) return static_cast<LightModelWay>(k);
+  throw Error("must be linear, net or published");
+}
+nlohmann::json Codec<LightModelWay>::write(const LightModelWay& value) {
+  return way_names[static_cast<std::size_t>(value)];
+}
+
 TransferModelOptions training_options(const TrainLightAction& action) {
   const auto within = [](const char* field, double value, double low, double high) {
     if (!(value >= low && value <= high)) throw FieldError(field, fmt::format("must lie between {} and {}", low, high));
@@ -38,16 +51,16 @@ TransferModelOptions training_options(const TrainLightAction& action) {
   within("channels", action.channels, 8, 64);
   within("coarseness", action.coarseness, 0.005, 0.5);
   if (action.channels % 8 != 0) throw FieldError("channels", "must be a multiple of 8");
-  if (action.way != "linear" && action.way != "net")
-    throw FieldError("way", "\"" + action.way + "\" is not known (known: linear, net)");
   TransferModelOptions options;
   options.poses = action.poses;
   options.rays = action.rays;
   options.coarseness = action.coarseness;
-  if (action.way == "net") {
-    options.net.emplace();
-    options.net->channels = action.channels;
-  }
+  if (action.way == LightModelWay::linear) return options;
+  options.net.emplace();
+  options.net->channels = action.channels;
+  options.published = action.way == LightModelWay::published;
+  // As published; the number of epochs is not, as poses are simpler than its animations.
+  if (options.published) options.net->batch = 5, options.net->rate = 1e-3;
   return options;
 }
 
@@ -112,10 +125,12 @@ REBAKE_DESCRIBE_ACTION(
       visit("poses", action.poses, Need::optional, "number of poses, 8 to 2000");
       visit("rays", action.rays, Need::optional, "rays per site, 16 to 16384");
       visit("way", action.way, Need::optional,
-            "linear in the pose, or net: a U-Net on a geometry image (needs LibTorch)");
-      visit("channels", action.channels, Need::optional, "net: channels of the first layer, a multiple of 8 up to 64");
+            "linear in the pose; net: a U-Net on a geometry image; published: that of deep precomputed radiance "
+            "transfer (both need LibTorch)");
+      visit("channels", action.channels, Need::optional,
+            "networks: channels of the first layer, a multiple of 8 up to 64");
       visit("coarseness", action.coarseness, Need::optional,
-            "net: coarseness of the proxy body relative to the object's diagonal");
+            "networks: coarseness of the proxy body relative to the object's diagonal");
       visit("out", action.out, Need::optional, "also write the model to this file");
     })
 

@@ -7,10 +7,21 @@
 
 #include "editor/actions/action.h"
 #include "editor/actions/session.h"
+#include "editor/fields/codec.h"
 #include "editor/fields/values.h"
 #include "mesh_ops/light/train_transfer_model.h"
 
 namespace rebake {
+
+/// Method of a model of light transfer: linear in the pose; a U-Net (UnetTransfer); that of deep precomputed radiance
+/// transfer as published (DprtTransfer).
+enum class LightModelWay { linear, net, published };
+template <>
+struct Codec<LightModelWay> {
+  static FieldType type();
+  static LightModelWay read(const nlohmann::json& value, const Scene& scene);
+  static nlohmann::json write(const LightModelWay& value);
+};
 
 /// Trains a model of an object's light transfer, which shades drags of it. The scene stays as it is.
 struct TrainLightAction {
@@ -18,10 +29,10 @@ struct TrainLightAction {
   std::optional<NodeRef> node;       ///< nothing: the only object
   std::optional<PosingEdits> edits;  ///< nothing: the deformations of the object in the history
   int poses = 200, rays = 128;
-  std::string way = "linear";  ///< linear or net
-  int channels = 8;            ///< net: of the first layer
-  double coarseness = 0.03;    ///< net: of the proxy body, a share of the object's diagonal
-  std::string out;             ///< also write the model to this file
+  LightModelWay way = LightModelWay::linear;
+  int channels = 8;          ///< networks: of the first layer
+  double coarseness = 0.03;  ///< networks: of the proxy body, a share of the object's diagonal
+  std::string out;           ///< also write the model to this file
 
   /// Files that the edits read.
   static std::vector<std::filesystem::path> input_files(const nlohmann::json& object);

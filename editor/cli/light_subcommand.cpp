@@ -26,6 +26,7 @@ struct Options {
   std::vector<std::string> paths;
   std::vector<std::string> edits;
   std::string node;
+  std::string way = "linear";
   TrainLightAction training;  // without node and edits
   FolderOptions reading;
 };
@@ -101,15 +102,17 @@ void describe_light(SubcommandDescription& command) {
   command.option("--poses", options->training.poses, "train: number of poses, 8 to 2000", "N [200]").between(8, 2000);
   command.option("--rays", options->training.rays, "train: rays per site, 16 to 16384", "N [128]").between(16, 16384);
   command
-      .option("--way", options->training.way,
-              "train: model; linear in the pose, or net: a U-Net on a geometry image of a proxy body", "linear|net")
-      .one_of(std::vector<std::string>{"linear", "net"});
+      .option("--way", options->way,
+              "train: model; linear in the pose; net: a U-Net on a geometry image of a proxy body; published: that of "
+              "deep precomputed radiance transfer",
+              "linear|net|published")
+      .one_of(Codec<LightModelWay>::type().choices);
   command
       .option("--channels", options->training.channels,
-              "train, net: channels of the first layer, a multiple of 8 up to 64", "N [8]")
+              "train, networks: channels of the first layer, a multiple of 8 up to 64", "N [8]")
       .between(8, 64);
   command.option("--coarseness", options->training.coarseness,
-                 "train, net: coarseness of the proxy body relative to the object's diagonal; coarser if the body "
+                 "train, networks: coarseness of the proxy body relative to the object's diagonal; coarser if the body "
                  "would split into parts",
                  "SHARE [0.03]");
   command.option("-o,--out", options->training.out, "train: also write the model to this file", "FILE");
@@ -119,6 +122,7 @@ void describe_light(SubcommandDescription& command) {
       "cached by the object's content; a later model replaces it. A model that is no better "
       "than rotation alone is not stored.");
   command.does([options] {
+    options->training.way = Codec<LightModelWay>::read(json(options->way), {});
     if (options->action == "train") return train(*options);
     if (options->action == "keep") return keep_model(*options);
     if (options->paths.size() > 1) throw FieldError("paths", "info takes one model");

@@ -15,18 +15,69 @@
 
 namespace rebake {
 
+namespace {
+
+struct StudyOptions {
+  std::string name, out, photographs;
+  std::vector<std::string> scenes;
+  int frames = 9;
+  DprtOptions dprt;
+  RepresentationsOptions representations;
+  bool quick = false;
+  FolderOptions reading;
+  ViewOptions view;
+};
+
+void print_table(const StudyTable& table) {
+  std::size_t width = 6;
+  for (const StudyTable::Row& row : table.rows) width = std::max(width, row.choice.size());
+  fmt::print("{:<{}}", "choice", width);
+  for (const std::string& column : table.columns) fmt::print("  {}", column);
+  fmt::print("\n");
+  for (const StudyTable::Row& row : table.rows) {
+    fmt::print("{:<{}}", row.choice, width);
+    for (std::size_t k = 0; k < row.values.size(); ++k)
+      fmt::print("  {:>{}}", std::isnan(row.values[k]) ? "-" : fmt::format("{:.4g}", row.values[k]),
+                 table.columns[k].size());
+    fmt::print("\n");
+  }
+}
+
+void run_study(StudyOptions& options) {
+  for (const Study& study : study_table) {
+    if (options.name != study.name) continue;
+    if (options.scenes.empty()) options.scenes.push_back(default_study_scene().string());
+    auto [scene, sources] = load_scenes(options.scenes, options.reading, progress_bar());
+    options.view.set_background(scene);
+    options.view.protect_files(sources);
+    if (!options.photographs.empty())
+      for (const auto& file : files_of_capture({options.photographs}, {}))
+        sources.add_file(file, "a file of the capture");
+    prepare_study_folder(study, options.out, sources);
+    std::unique_ptr<Renderer> renderer;
+    const auto on_demand = [&]() -> Renderer& {
+      if (!renderer) renderer = std::make_unique<Renderer>();
+      return *renderer;
+    };
+    const StudyTable table = study.run({on_demand, scene, options.view.view(scene), options.frames, progress_bar(),
+                                        options.photographs, options.out,
+                                        [](const std::string& line) {
+                                          fmt::print("{}\n", line);
+                                          std::fflush(stdout);
+                                        },
+                                        options.dprt, options.representations, options.quick});
+    clear_progress_bar();
+    print_table(table);
+    write_study(study, table, options.out, sources);
+    return;
+  }
+  throw FieldError("name", fmt::format("there is no study \"{}\"; rebake study --help lists them", options.name));
+}
+
+}  // namespace
+
 void describe_study(SubcommandDescription& command) {
-  struct Options {
-    std::string name, out, photographs;
-    std::vector<std::string> scenes;
-    int frames = 9;
-    DprtOptions dprt;
-    RepresentationsOptions representations;
-    bool quick = false;
-    FolderOptions reading;
-    ViewOptions view;
-  };
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StudyOptions>();
   std::string names;
   for (const Study& study : study_table) names += fmt::format("\n  {:<10} {}", study.name, study.help);
   command.footer("Studies:" + names);
@@ -49,54 +100,14 @@ void describe_study(SubcommandDescription& command) {
       .between(1, 100000);
   command.flag("--cuda", options->dprt.cuda, "dprt: train on the graphics card");
   command.flag("--paper", options->dprt.paper,
-               "dprt: the published sizes: side 256 (fish 512), 32 channels, 500 epochs");
+               "dprt: the published sizes where no others are given: side 256 (fish 512), 32 channels, 500 epochs");
   command.flag("--quick", options->quick, "representations, limits: small sizes, to try it");
   command.option("--snerg", options->representations.snerg, "representations: a SNeRG scene to measure too", "FOLDER");
   command.option("--plenoctree", options->representations.plenoctree, "representations: a PlenOctree to measure too",
                  "NPZ");
   options->view.add_to(command);
   options->reading.add_to(command);
-  command.does([options] {
-    for (const Study& study : study_table) {
-      if (options->name != study.name) continue;
-      if (options->scenes.empty()) options->scenes.push_back(default_study_scene().string());
-      auto [scene, sources] = load_scenes(options->scenes, options->reading, progress_bar());
-      options->view.set_background(scene);
-      options->view.protect_files(sources);
-      if (!options->photographs.empty())
-        for (const auto& file : files_of_capture({options->photographs}, {}))
-          sources.add_file(file, "a file of the capture");
-      prepare_study_folder(study, options->out, sources);
-      std::unique_ptr<Renderer> renderer;
-      const auto on_demand = [&]() -> Renderer& {
-        if (!renderer) renderer = std::make_unique<Renderer>();
-        return *renderer;
-      };
-      const StudyTable table = study.run({on_demand, scene, options->view.view(scene), options->frames, progress_bar(),
-                                          options->photographs, options->out,
-                                          [](const std::string& line) {
-                                            fmt::print("{}\n", line);
-                                            std::fflush(stdout);
-                                          },
-                                          options->dprt, options->representations, options->quick});
-      clear_progress_bar();
-      std::size_t width = 6;
-      for (const StudyTable::Row& row : table.rows) width = std::max(width, row.choice.size());
-      fmt::print("{:<{}}", "choice", width);
-      for (const std::string& column : table.columns) fmt::print("  {}", column);
-      fmt::print("\n");
-      for (const StudyTable::Row& row : table.rows) {
-        fmt::print("{:<{}}", row.choice, width);
-        for (std::size_t k = 0; k < row.values.size(); ++k)
-          fmt::print("  {:>{}}", std::isnan(row.values[k]) ? "-" : fmt::format("{:.4g}", row.values[k]),
-                     table.columns[k].size());
-        fmt::print("\n");
-      }
-      write_study(study, table, options->out, sources);
-      return;
-    }
-    throw FieldError("name", fmt::format("there is no study \"{}\"; rebake study --help lists them", options->name));
-  });
+  command.does([options] { run_study(*options); });
 }
 
 }  // namespace rebake

@@ -8,6 +8,8 @@
 #include "editor/studies/representations/scene_kinds.h"
 #include "editor/studies/study.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/formats.h"
 #include "mesh_ops/texture/linear_filter.h"
 #include "render/compare.h"
 #include "render/contact_sheet.h"
@@ -23,6 +25,9 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr int picture_side = 400;
 
+// Changes when bakes do: scenes of earlier versions are then baked again.
+constexpr int bake_version = 1;
+
 Scene scene_with(std::shared_ptr<const BakedObject> object) {
   Node node;
   node.object = std::move(object);
@@ -32,11 +37,18 @@ Scene scene_with(std::shared_ptr<const BakedObject> object) {
 // Texels per side of a quad: fewer in quick runs.
 int texels_of(const StudyInput& input, int texels) { return input.quick ? texels / 2 : texels; }
 
-Scene baked(const StudyInput& input, const bakery::Model& model, const bakery::RadianceField& field, int texels) {
+// Bakes a scene, or reads it from the study's folder, where an earlier run has left it.
+Scene baked(const StudyInput& input, const std::string& name, const bakery::Model& model,
+            const bakery::RadianceField& field, int texels) {
   const bakery::BakeOptions options{.epochs = input.quick ? 2 : 20,
                                     .observations = input.quick ? 8 : 48,
                                     .texels_per_side = texels_of(input, texels)};
-  return scene_with(bakery::bake(model, field, options, input.progress));
+  const std::filesystem::path folder =
+      own_folder(input, "limits") /
+      fmt::format("{}-{}-{}-{}", name, options.texels_per_side, options.epochs, bake_version);
+  if (format_at(folder) == nullptr)
+    export_scene(scene_with(bakery::bake(model, field, options, input.progress)), folder, {}, input.progress);
+  return read_any(folder, ReadOptions(model.axes), input.progress);
 }
 
 // The scene with textures that are interpolated linearly to `factor` times as many texels per side.
@@ -102,7 +114,7 @@ void study_distance(const StudyInput& input, const std::filesystem::path& own, S
   const bakery::Model model = procedural_model("kettle");
   const bakery::RadianceField field(model);
   input.say("close-ups: baking the kettle with 17×17 and 33×33 texels per quad");
-  const Scene usual = baked(input, model, field, 17), fine = baked(input, model, field, 33);
+  const Scene usual = baked(input, "kettle", model, field, 17), fine = baked(input, "kettle", model, field, 33);
   const std::vector<Choice> choices{{"close-up, nearest texels", usual, 4},
                                     {"close-up, texels interpolated to 3 × 3", interpolated(usual, 3), 4},
                                     {"close-up, baked with 4 times the texels", fine, 4}};
@@ -191,8 +203,9 @@ void study_opacity(const StudyInput& input, const std::filesystem::path& own, St
   input.say("semi-transparent parts: baking a veil of half opacity in front of the shelf");
   // The veil lets half of the light through in all of them.
   const bakery::RadianceField light(dithered), with(closed), without(bare);
-  const Scene none_of_it = baked(input, bare, light, 17), all_of_it = baked(input, closed, light, 17),
-              half_of_it = baked(input, dithered, light, 17);
+  const Scene none_of_it = baked(input, "shelf-without", bare, light, 17),
+              all_of_it = baked(input, "shelf-with", closed, light, 17),
+              half_of_it = baked(input, "shelf-half", dithered, light, 17);
   const std::vector<Choice> choices{{"half opacity: left out", none_of_it, 4},
                                     {"half opacity: opaque", all_of_it, 4},
                                     {"half opacity: every other texel, 1 sample", half_of_it, 1},
@@ -236,7 +249,7 @@ void study_angle(const StudyInput& input, const std::filesystem::path& own, Stud
   const bakery::Model model = procedural_model("courtyard");
   const bakery::RadianceField field(model);
   input.say("surfaces seen from the side: baking the courtyard");
-  const Scene scene = baked(input, model, field, 17);
+  const Scene scene = baked(input, "courtyard", model, field, 17);
   const std::vector<HeldOutView> views = held_out_views(model, input.quick ? 1 : 3, picture_side);
   std::vector<PlottedLine> lines;
   for (const int samples : {1, 4, 16}) {
@@ -281,8 +294,10 @@ StudyTable study_limits(const StudyInput& input) {
                    1,
                    true,
                    false};
-  input.say(input.quick ? "few epochs and texels: about a minute on two cores"
-                        : "three parts, which bake six scenes: about 5 minutes on two cores");
+  input.say(input.quick
+                ? "few epochs and texels: about a minute on two cores"
+                : "three parts, which bake six scenes: about 5 minutes on two cores; baked scenes stay in the output "
+                  "folder, so the study can be stopped and started again");
   const std::filesystem::path own = own_folder(input, "limits");
   study_distance(input, own, table);
   study_opacity(input, own, table);

@@ -32,11 +32,12 @@ struct StudyTable {
 struct DprtOptions {
   std::string object = "cloth";  ///< head, fish, cloth, space (of shapes between head and plane), or all
   std::string meshes;            ///< pattern of files with one mesh per frame, instead of `object`; empty: none
-  int side = 64;                 ///< texels per side of the geometry images
-  int channels = 16;             ///< of the network's finest level
-  int epochs = 60;
+  // 0: 64, 16 and 60, or the published sizes.
+  int side = 0;      ///< texels per side of the geometry images
+  int channels = 0;  ///< of the network's finest level
+  int epochs = 0;
   bool cuda = false;   ///< train on the graphics card
-  bool paper = false;  ///< the published sizes instead of `side`, `channels` and `epochs`
+  bool paper = false;  ///< the published sizes where none are given
 };
 
 /// Options of the study of representations.

@@ -60,11 +60,16 @@ TransferModel trained_model(const DragLight& start,
   model.poses = options.poses;
   model.rays = options.rays;
   std::optional<UnetTransfer::Training> images;
+  std::optional<DprtTransfer::Training> published;
   if (options.net) {
     require_unet_training();
     BodyImage image = body_image(*from.object, from.sites.now, from.facing, options.coarseness, progress);
     model.keys = image.sites;
-    images.emplace(std::move(image.mesh), GeometryImage(image.chart, image_side));
+    GeometryImage laid_out(image.chart, image_side);
+    if (options.published)
+      published.emplace(std::move(laid_out));
+    else
+      images.emplace(std::move(image.mesh), std::move(laid_out));
   } else {
     // Farthest-point sampling; all sites if there are at most `keys`.
     model.keys = PoseSpace::probes_of(places, options.keys);
@@ -79,6 +84,7 @@ TransferModel trained_model(const DragLight& start,
   struct Held {
     int pose;
     std::vector<LightSite> sites;
+    std::vector<Mat3> turns;
   };
   std::vector<Held> held;
   Eigen::VectorXf at_rest;  // transfer of the keys at rest, which rotation alone would predict
@@ -94,9 +100,11 @@ TransferModel trained_model(const DragLight& start,
     }
     for (std::size_t i = 0; i < key_places.size(); ++i) key_places[i] = keys.sites[i].position;
     training.set(static_cast<std::size_t>(k), key_places, keys.turns, keys.transfer);
-    if (!images) continue;
+    if (!options.net) continue;
     if (held_back(k))
-      held.push_back({k, std::move(keys.sites)});
+      held.push_back({k, std::move(keys.sites), std::move(keys.turns)});
+    else if (published)
+      published->add(keys.sites, keys.transfer);
     else
       images->add(keys.sites, keys.turns, keys.transfer);
   }
@@ -115,12 +123,18 @@ TransferModel trained_model(const DragLight& start,
     all += static_cast<double>(truth.squaredNorm());
   }
   model.turning_error = relative(turned, all);
-  if (!images) return model;
-  model.net = images->learned(*options.net, progress);
+  if (!options.net) return model;
+  if (published)
+    model.published = published->learned(*options.net, progress);
+  else
+    model.net = images->learned(*options.net, progress);
   for (const Held& one : held) {
     const Eigen::VectorXf truth = training.local.row(one.pose).transpose();
-    off += static_cast<double>((model.net->predict(one.sites) - truth).squaredNorm());
+    off += static_cast<double>((model.predict({}, one.sites, one.turns) - truth).squaredNorm());
   }
+  model.learned.mean.resize(0);
+  model.learned.components.resize(0, 0);
+  model.learned.linear.resize(0, model.learned.space.dimensions() + 1);
   model.net_error = relative(off, all);
   return model;
 }

@@ -17,6 +17,7 @@ struct TransferModelOptions {
   /// Deep transfer: a U-Net on a geometry image of a wrap of this coarseness or coarser (body_image), trained on seven
   /// of eight poses.
   std::optional<UnetTraining> net{};
+  bool published = false;  ///< with `net`: the network as published (DprtTransfer) instead of Rebake's (UnetTransfer)
   double coarseness = 0.03;
 };
 /// Trains a model on poses of the object of `start`, which must be unedited. `pose(k)` returns the object in pose k,

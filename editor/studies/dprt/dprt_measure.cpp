@@ -23,7 +23,7 @@ std::vector<TestFrame> held_out_frames(const TracedFrames& traced) {
 TestFrame test_frame(const TracedFrames& traced, std::vector<Vec3> places) {
   TestFrame test;
   test.sites = sites_of(traced.rest, places);
-  test.truth = traced_planes(traced.rest, places, 4 * training_rays);
+  test.truth = traced_planes(traced.rest, places, truth_rays_per_ray * training_rays);
   test.places = std::move(places);
   return test;
 }

@@ -8,7 +8,7 @@
 
 namespace rebake {
 
-/// Rays per texel of training frames; poses to measure errors on have four times as many.
+/// Rays per texel of training frames.
 inline constexpr int training_rays = 256;
 
 /// A pose with its true transfer.

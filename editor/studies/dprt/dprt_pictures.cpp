@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "editor/actions/views.h"
+#include "editor/studies/dprt/dprt_gloss.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/light/transport/rotated_product.h"
 #include "mesh_ops/scene/scene_light.h"
@@ -59,12 +60,10 @@ std::vector<Radiance> lit(const std::vector<float>& transfer) {
   return result;
 }
 
-}  // namespace
-
-void write_dprt_picture(const StudyInput& input, const TracedFrames& traced, const std::vector<Vec3>& places,
-                        const std::vector<float>& truth, const std::vector<float>& found,
-                        const std::filesystem::path& file) {
-  const std::vector<Radiance> wanted = lit(truth), got = lit(found);
+void write_pictures(const StudyInput& input, const TracedFrames& traced, const std::vector<Vec3>& places,
+                    const std::vector<float>& truth, const std::vector<float>& found,
+                    const std::vector<Radiance>& wanted, const std::vector<Radiance>& got,
+                    const std::filesystem::path& file) {
   const std::size_t texels = wanted.size();
   std::array<std::vector<Rgb8>, 4> colors;
   constexpr double exposure = 1.1, error_gain = 10, coefficient_gain = 10;
@@ -101,6 +100,33 @@ void write_dprt_picture(const StudyInput& input, const TracedFrames& traced, con
   } catch (const DeviceError& error) {
     input.say(fmt::format("warning: {} was not written: {}", file.filename().string(), error.what()));
   }
+}
+
+}  // namespace
+
+void write_dprt_picture(const StudyInput& input, const TracedFrames& traced, const std::vector<Vec3>& places,
+                        const std::vector<float>& truth, const std::vector<float>& found,
+                        const std::filesystem::path& file) {
+  write_pictures(input, traced, places, truth, found, lit(truth), lit(found), file);
+}
+
+Vec3 eye_of_picture(const TracedFrames& traced, const std::vector<Vec3>& places) {
+  const std::vector<Rgb8> black(places.size());
+  return framing_camera(colored(traced, places, black, {1, 1, 1}), 1).eye;
+}
+
+void write_glossy_picture(const StudyInput& input, const TracedFrames& traced, const std::vector<Vec3>& places,
+                          const std::vector<LightSite>& sites, const std::vector<float>& truth,
+                          const std::vector<float>& found, const std::filesystem::path& file) {
+  constexpr double ground = 0.3, gloss = 0.35;
+  const auto light = glossy_light(sites, eye_of_picture(traced, places));
+  const auto seen = [&](const std::vector<float>& transfer) {
+    std::vector<Radiance> result = lit(transfer);
+    const std::vector<Radiance> mirrored = reflected(light, transfer);
+    for (std::size_t t = 0; t < result.size(); ++t) result[t] = ground * result[t] + gloss * mirrored[t];
+    return result;
+  };
+  write_pictures(input, traced, places, truth, found, seen(truth), seen(found), file);
 }
 
 }  // namespace rebake

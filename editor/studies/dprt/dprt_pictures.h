@@ -14,4 +14,12 @@ void write_dprt_picture(const StudyInput& input, const TracedFrames& traced, con
                         const std::vector<float>& truth, const std::vector<float>& found,
                         const std::filesystem::path& file);
 
+/// The same of a glossy surface (glossy_light()) with a grey ground: the paper's Figure 5. `sites`: of the pose.
+void write_glossy_picture(const StudyInput& input, const TracedFrames& traced, const std::vector<Vec3>& places,
+                          const std::vector<LightSite>& sites, const std::vector<float>& truth,
+                          const std::vector<float>& found, const std::filesystem::path& file);
+
+/// The eye of these pictures.
+Vec3 eye_of_picture(const TracedFrames& traced, const std::vector<Vec3>& places);
+
 }  // namespace rebake

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "editor/studies/dprt/dprt_gloss.h"
 #include "editor/studies/dprt/dprt_measure.h"
 #include "editor/studies/dprt/dprt_pictures.h"
 #include "editor/studies/dprt/shape_space.h"
@@ -21,7 +22,7 @@ AnimatedObject object_named(const std::string& name, const StudyInput& input) {
   if (!input.dprt.meshes.empty()) return animated_files(input.dprt.meshes);
   if (name == "head") return animated_head();
   if (name == "fish") return animated_fish();
-  if (name == "cloth") return animated_cloth(dprt_frames, input.progress);
+  if (name == "cloth") return kept_cloth(dprt_frames, own_folder(input, "dprt") / "cloth.frames", input.progress);
   throw FieldError("object", fmt::format("\"{}\" is not known (known: head, fish, cloth, space, all)", name));
 }
 
@@ -43,14 +44,23 @@ std::vector<TestFrame> frames_beyond(const TracedFrames& traced, const Progress&
   return tests;
 }
 
-// The sizes of a run: those of the options, or the published ones.
+// The sizes of a run: those of the options where given, else the published or the usual ones.
 DprtOptions sizes_of(const DprtOptions& wanted, const std::string& object) {
   DprtOptions options = wanted;
-  if (!wanted.paper) return options;
-  options.side = object == "fish" ? published_side_of_fish : published_side;
-  options.channels = published_channels;
-  options.epochs = published_epochs;
+  const auto choose = [&](int& size, int published, int usual) {
+    if (size == 0) size = wanted.paper ? published : usual;
+  };
+  choose(options.side, object == "fish" ? published_side_of_fish : published_side, 64);
+  choose(options.channels, published_channels, 16);
+  choose(options.epochs, published_epochs, 60);
   return options;
+}
+
+// Frames, coefficients, and the images and targets of both networks' training sets, which exist one after the other.
+double gigabytes_of(const DprtOptions& options) {
+  constexpr double of_texel = sizeof(Vec3) + sizeof(float) * (sh::count + unet_inputs + unet_outputs) +
+                              sizeof(float) * sh::count;  // what the second training set keeps besides
+  return dprt_frames * of_texel * options.side * options.side / 1e9;
 }
 
 void study_object(const StudyInput& input, const std::string& name, StudyTable& table) {
@@ -61,9 +71,10 @@ void study_object(const StudyInput& input, const std::string& name, StudyTable& 
                                             own / (object.name + fmt::format("-{}", options.side)), input.progress);
   say_layout(input, object.name, traced);
   const std::vector<TestFrame> tests = held_out_frames(traced), beyond = frames_beyond(traced, input.progress);
-  std::vector<DprtMethod> methods = rest_methods(traced, 4 * training_rays);
+  std::vector<DprtMethod> methods = rest_methods(traced, truth_rays_per_ray * training_rays);
   std::optional<DprtMethod> published = add_learned_methods(input, options, object.name, traced, methods);
-  for (const int rays : {16, 64, 256}) methods.push_back(traced_method(traced, rays));
+  const GlossyTest glossy(traced, tests);
+  for (const int rays : {16, 64, 256, 1024}) methods.push_back(traced_method(traced, rays));
   const double every_frame = static_cast<double>(traced.frames.size() - tests.size()) *
                              static_cast<double>(traced.rest.vertices.size()) * sh::count * sizeof(float);
   for (const DprtMethod& method : methods) {
@@ -71,38 +82,41 @@ void study_object(const StudyInput& input, const std::string& name, StudyTable& 
     table.rows.push_back(
         {object.name + ": " + method.name,
          {milliseconds, percent_off(method, tests, input.progress), percent_off(method, beyond, input.progress),
-          method.loss, method.held_out_loss, method.parameters / 1e6, method.bytes / 1e6,
+          glossy.percent_off(method), method.loss, method.held_out_loss, method.parameters / 1e6, method.bytes / 1e6,
           method.bytes > 0 ? every_frame / method.bytes : 0, method.minutes}});
   }
   if (published) {
     const TestFrame& shown = tests[tests.size() / 2];
-    write_dprt_picture(input, traced, shown.places, shown.truth, published->predict(shown.sites, shown.places),
-                       own / fmt::format("{}.png", object.name));
+    const std::vector<float> found = published->predict(shown.sites, shown.places);
+    write_dprt_picture(input, traced, shown.places, shown.truth, found, own / fmt::format("{}.png", object.name));
+    write_glossy_picture(input, traced, shown.places, shown.sites.sites, shown.truth, found,
+                         own / fmt::format("{}-glossy.png", object.name));
   }
 }
 
 }  // namespace
 
 StudyTable study_dprt(const StudyInput& input) {
-  StudyTable table{{"milliseconds", "error % on held-out frames", "error % at 1.5 times the deformation", "L1 loss",
-                    "held-out L1 loss", "million parameters", "megabytes", "compression of the training frames",
-                    "minutes of training"},
+  StudyTable table{{"milliseconds", "error % on held-out frames", "error % at 1.5 times the deformation",
+                    "error % of glossy reflections", "L1 loss", "held-out L1 loss", "million parameters", "megabytes",
+                    "compression of the training frames", "minutes of training"},
                    {},
                    0,
                    1,
                    true,
                    true};
   const DprtOptions& options = input.dprt;
-  if (const int step = unet_side_step(UnetForm::added); !options.paper && options.side % step != 0)
+  if (const int step = unet_side_step(UnetForm::added); options.side % step != 0)
     throw FieldError("--side", fmt::format("must be a multiple of {}", step));
   if (options.channels % 8 != 0) throw FieldError("--channels", "must be a multiple of 8");
-  if (!options.paper)
-    input.say(
-        fmt::format("sizes: {}² texels, {} channels, {} epochs (published: 256² and 512² texels, 32 channels, 500 to "
-                    "1000 epochs; --paper); about 20 minutes per object with the default sizes on two cores",
-                    options.side, options.channels, options.epochs));
+  const DprtOptions sizes = sizes_of(options, options.object);
+  input.say(
+      fmt::format("sizes: {}² texels, {} channels, {} epochs (published: 256² and 512² texels, 32 channels, 500 to "
+                  "1000 epochs; --paper); about {:.1f} GB of memory; about 20 minutes per object with the default "
+                  "sizes on two cores",
+                  sizes.side, sizes.channels, sizes.epochs, gigabytes_of(sizes)));
   if (options.object == "space") {
-    study_shape_space(input, sizes_of(options, "space"), table);
+    study_shape_space(input, sizes, table);
     return table;
   }
   if (options.object == "all" && options.meshes.empty())

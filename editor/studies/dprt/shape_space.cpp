@@ -101,11 +101,11 @@ void study_shape_space(const StudyInput& input, const DprtOptions& options, Stud
     StudyTable::Row row{"space: " + method.name, std::vector<double>(table.columns.size(), DprtMethod::nan)};
     row.values[0] = milliseconds_of(method, traced, tests.front(), input.frames);
     row.values[1] = percent_off(method, tests, input.progress);
-    row.values[3] = method.loss;
-    row.values[4] = method.held_out_loss;
-    row.values[5] = method.parameters / 1e6;
-    row.values[6] = method.bytes / 1e6;
-    row.values[8] = method.minutes;
+    row.values[4] = method.loss;
+    row.values[5] = method.held_out_loss;
+    row.values[6] = method.parameters / 1e6;
+    row.values[7] = method.bytes / 1e6;
+    row.values[9] = method.minutes;
     table.rows.push_back(std::move(row));
   }
   Sweep over{"space-sweep", "shapes between a plane (0) and a head (1)", "share of the head", {}};

@@ -60,7 +60,7 @@ class TraceCache {
 };
 
 std::uint64_t hash_of(const TracedFrames& traced, int rays) {
-  std::string bytes = fmt::format("{} {} {} ", traced.side, rays, traced.frames.size());
+  std::string bytes = fmt::format("{} {} {} {} ", traced.side, rays, truth_rays_per_ray, traced.frames.size());
   const auto add = [&](const auto& values) {
     bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
   };
@@ -121,7 +121,6 @@ TracedFrames traced_frames(const AnimatedObject& object, int side, int rays, con
   result.transfer = kept.take_frames();
   const auto start = std::chrono::steady_clock::now();
   const std::size_t first = result.transfer.size();
-  constexpr int more_for_held_out = 4;
   for (std::size_t k = first; k < result.frames.size(); ++k) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::size_t done = k - first;
@@ -131,7 +130,7 @@ TracedFrames traced_frames(const AnimatedObject& object, int side, int rays, con
                                       : ""),
                 static_cast<double>(k) / static_cast<double>(result.frames.size()));
     result.transfer.push_back(
-        traced_planes(result.rest, result.frames[k], is_held_out(k) ? more_for_held_out * rays : rays));
+        traced_planes(result.rest, result.frames[k], is_held_out(k) ? truth_rays_per_ray * rays : rays));
     kept.add(result.transfer.back());
   }
   return result;

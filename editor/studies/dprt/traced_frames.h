@@ -31,13 +31,16 @@ struct FrameSites {
 };
 FrameSites sites_of(const ProxyMesh& rest, const std::vector<Vec3>& frame);
 
+/// Poses to measure errors on have this many times as many rays as those to train on.
+inline constexpr int truth_rays_per_ray = 16;
+
 /// Every tenth frame is held out, as published in number.
 constexpr bool is_held_out(std::size_t frame) { return frame % 10 == 5; }
 
 /// Lays the object out over a square of `side`² texels by a harmonic map, and traces each frame with `rays` rays per
-/// texel; held-out frames with four times as many. `cache`: start of the name of a file that keeps traced frames, so
-/// that an interrupted call goes on; empty: none. Surfaces that are no disk are cut. Throws Error for those that are
-/// not manifold or not connected, FileError, and Cancelled.
+/// texel; held-out frames with truth_rays_per_ray times as many. `cache`: start of the name of a file that keeps traced
+/// frames, so that an interrupted call goes on; empty: none. Surfaces that are no disk are cut. Throws Error for those
+/// that are not manifold or not connected, FileError, and Cancelled.
 TracedFrames traced_frames(const AnimatedObject& object, int side, int rays, const std::filesystem::path& cache,
                            const Progress& progress);
 

@@ -12,6 +12,7 @@
 #include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/light/learned/dprt_ranges.h"
 #include "mesh_ops/light/learned/learned_transfer.h"
 #include "mesh_ops/light/learned/unet_trainer.h"
 #include "mesh_ops/light/learned/unet_transfer.h"
@@ -65,32 +66,11 @@ std::size_t held_out_count(const TracedFrames& traced) {
   return count;
 }
 
-// The ranges of the training frames; coefficients with a margin on both sides, which the sigmoid reaches easily.
 DprtNetwork::Ranges ranges_of(const TracedFrames& traced) {
-  DprtNetwork::Ranges ranges;
-  Box box;
-  const std::size_t texels = texels_of(traced);
-  constexpr float margin = 0.05F;
-  ranges.low.fill(std::numeric_limits<float>::infinity());
-  ranges.high.fill(-std::numeric_limits<float>::infinity());
-  for (std::size_t k = 0; k < traced.frames.size(); ++k) {
-    if (is_held_out(k)) continue;
-    for (const Vec3& p : traced.frames[k]) box.extend(p);
-    for (std::size_t c = 0; c < sh::count; ++c) {
-      const auto first = traced.transfer[k].begin() + static_cast<std::ptrdiff_t>(c * texels);
-      const auto [low, high] = std::minmax_element(first, first + static_cast<std::ptrdiff_t>(texels));
-      ranges.low[c] = std::min(ranges.low[c], *low);
-      ranges.high[c] = std::max(ranges.high[c], *high);
-    }
-  }
-  for (std::size_t c = 0; c < sh::count; ++c) {
-    const float room = margin * (ranges.high[c] - ranges.low[c]);
-    ranges.low[c] -= room;
-    ranges.high[c] += room;
-  }
-  ranges.center = box.center();
-  ranges.reach = box.sizes().maxCoeff() / 2;
-  return ranges;
+  DprtRanges seen;
+  for (std::size_t k = 0; k < traced.frames.size(); ++k)
+    if (!is_held_out(k)) seen.add(traced.frames[k], traced.transfer[k]);
+  return seen.found();
 }
 
 UnetImages images_of(const TracedFrames& traced, const DprtNetwork::Ranges& ranges, const Progress& progress) {
@@ -106,13 +86,8 @@ UnetImages images_of(const TracedFrames& traced, const DprtNetwork::Ranges& rang
   tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
     const Planes image = DprtNetwork::image_of(sites_of(traced.rest, traced.frames[order[i]]).sites, ranges);
     std::copy(image.begin(), image.end(), images.images.begin() + static_cast<std::ptrdiff_t>(i * image.size()));
-    const Planes& transfer = traced.transfer[order[i]];
-    float* to = images.targets.data() + i * transfer.size();
-    for (std::size_t c = 0; c < sh::count; ++c) {
-      const float range = ranges.high[c] - ranges.low[c];
-      for (std::size_t t = 0; t < texels; ++t)
-        to[c * texels + t] = range > 0 ? (transfer[c * texels + t] - ranges.low[c]) / range : 0.5F;
-    }
+    const Planes targets = dprt_targets(traced.transfer[order[i]], ranges);
+    std::copy(targets.begin(), targets.end(), images.targets.begin() + static_cast<std::ptrdiff_t>(i * targets.size()));
   });
   return images;
 }

@@ -5,10 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "mesh_ops/index/footprint.h"
 
 namespace rebake {
+
+void check_chart(const DiskChart& chart, std::size_t vertices) {
+  const auto all = [](const auto& values, auto holds) { return std::all_of(values.begin(), values.end(), holds); };
+  const bool fits =
+      chart.uvs.size() == chart.source.size() && !chart.source.empty() &&
+      *std::max_element(chart.source.begin(), chart.source.end()) + std::size_t{1} == vertices &&
+      all(chart.uvs,
+          [](const Vec2& uv) { return uv.allFinite() && uv.minCoeff() >= -1e-9 && uv.maxCoeff() <= 1 + 1e-9; }) &&
+      all(chart.faces,
+          [&](const Face& face) { return all(face, [&](std::uint32_t v) { return v < chart.source.size(); }); });
+  if (!fits) throw std::invalid_argument("the chart of a network's image does not match its vertices");
+}
 
 GeometryImage::GeometryImage(const DiskChart& chart, int side) : side_(side), chart_(chart) {
   const double last = side - 1;

@@ -17,6 +17,10 @@ struct DiskChart {
   bool mean_value = false;            ///< laid out by mean value weights, because harmonic ones would fold
 };
 
+/// Throws std::invalid_argument unless each of `vertices` mesh vertices has a place in the square, and all numbers are
+/// in range.
+void check_chart(const DiskChart& chart, std::size_t vertices);
+
 /// A geometry image (Gu, Gortler and Hoppe 2002): each texel is a point of the surface. The outermost texel centres lie
 /// on the boundary of the square.
 class GeometryImage {

@@ -1,6 +1,7 @@
 #include "mesh_ops/light/learned/transfer_model.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <array>
 #include <cmath>
@@ -18,7 +19,9 @@ namespace rebake {
 namespace {
 
 constexpr const char* kind = "rebake transfer model 1";
-constexpr const char* kind_with_net = "rebake transfer model 2";
+// Version 2 kept the linear model beside the network.
+constexpr const char* kind_with_both = "rebake transfer model 2";
+constexpr const char* kind_with_net = "rebake transfer model 3";
 
 // Binary writer and reader, called by the visit functions in the same order.
 class Writer {
@@ -64,16 +67,22 @@ void visit_numbers(Model& model, Visit& visit) {
   matrix(learned.space.mean);
   matrix(learned.space.axes);
   matrix(learned.space.deviations);
+  // Empty with a network.
   matrix(learned.mean);
   matrix(learned.components);
   matrix(learned.linear);
 }
 
+template <class Chart, class Visit>
+void visit_chart(Chart& chart, Visit& visit) {
+  visit(chart.source.data(), chart.source.size());
+  for (auto& uv : chart.uvs) visit(uv.data(), 2);
+  for (auto& face : chart.faces) visit(face.data(), 3);
+}
+
 template <class State, class Visit>
 void visit_net(State& state, Visit& visit) {
-  visit(state.chart.source.data(), state.chart.source.size());
-  for (auto& uv : state.chart.uvs) visit(uv.data(), 2);
-  for (auto& face : state.chart.faces) visit(face.data(), 3);
+  visit_chart(state.chart, visit);
   visit(state.weights.data(), state.weights.size());
   visit(state.box.min().data(), 3);
   visit(state.box.max().data(), 3);
@@ -83,13 +92,29 @@ void visit_net(State& state, Visit& visit) {
 
 }  // namespace
 
-Eigen::VectorXf TransferModel::predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there) const {
-  return net ? net->predict(keys_there) : learned.predict(place);
+Eigen::VectorXf TransferModel::predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there,
+                                       const std::vector<Mat3>& turns) const {
+  if (net) return net->predict(keys_there);
+  if (!published) return learned.predict(place);
+  Eigen::VectorXf result = published->predict(keys_there);
+  tbb::parallel_for(std::size_t{0}, turns.size(), [&](std::size_t k) {
+    auto one = result.segment<sh::count>(static_cast<Eigen::Index>(k * sh::count));
+    one = (sh::Rotation(turns[k].transpose()) * sh::Coefficients(one.cast<double>())).cast<float>();
+  });
+  return result;
+}
+
+std::uint64_t TransferModel::memory() const {
+  return learned.memory() + (net ? net->memory() : 0) + (published ? published->memory() : 0);
+}
+
+double TransferModel::training_seconds() const {
+  return learned.seconds + (net ? net->seconds() : 0) + (published ? published->seconds() : 0);
 }
 
 std::string bytes_of(const TransferModel& model) {
   const LearnedTransfer& learned = model.learned;
-  nlohmann::json head = {{"kind", model.net ? kind_with_net : kind},
+  nlohmann::json head = {{"kind", model.has_network() ? kind_with_net : kind},
                          {"body", fmt::format("{:016x}", model.body)},
                          {"sites", model.sites},
                          {"poses_from", model.poses_from},
@@ -113,10 +138,23 @@ std::string bytes_of(const TransferModel& model) {
                    {"learning_seconds", net.seconds},
                    {"held_back_error", model.net_error}};
   }
+  std::string network;
+  if (model.published) {
+    network = model.published->net().bytes();
+    head["published"] = {{"bytes", network.size()},
+                         {"vertices", model.published->chart().source.size()},
+                         {"faces", model.published->chart().faces.size()},
+                         {"learning_seconds", model.published->seconds()},
+                         {"held_back_error", model.net_error}};
+  }
   Writer writer;
   writer.bytes = head.dump() + "\n";
   visit_numbers(model, writer);
   if (model.net) visit_net(model.net->state(), writer);
+  if (model.published) {
+    visit_chart(model.published->chart(), writer);
+    writer(network.data(), network.size());
+  }
   const std::uint64_t hash = content_hash(writer.bytes);
   writer(&hash, 1);
   return std::move(writer.bytes);
@@ -130,7 +168,7 @@ void require_room(std::size_t file_size, double values, std::size_t value_size) 
     throw Error("the file is truncated. Train the model again, or copy it again.");
 }
 
-// Reads numbers and sizes from the first line, and sizes the arrays.
+// Reads numbers and sizes from the first line, and sizes the arrays. Files with a network have no linear model.
 void read_head(const nlohmann::json& head, std::size_t file_size, TransferModel& model) {
   model.body = std::stoull(head.at("body").get<std::string>(), nullptr, 16);
   model.sites = head.at("sites");
@@ -147,7 +185,9 @@ void read_head(const nlohmann::json& head, std::size_t file_size, TransferModel&
   const auto keys = static_cast<double>(n.keys), probes = static_cast<double>(n.probes),
              dimensions = static_cast<double>(n.dimensions), components = static_cast<double>(n.components);
   if (n.keys == 0 || n.probes == 0) throw Error("\"keys\" and \"probes\" in the first line must not be 0");
-  require_room(file_size, keys * sh::count * (components + 1), sizeof(float));
+  const bool is_linear = head.at("kind") != kind_with_net;
+  if (!is_linear && n.components != 0) throw Error("\"components\" in the first line must be 0 for a network");
+  require_room(file_size, keys * (is_linear ? sh::count * (components + 1) : 1), sizeof(float));
   require_room(file_size, probes * 3 * (dimensions + 1), sizeof(double));
   require_room(file_size, components * (dimensions + 1), sizeof(double));
   const auto index = [](std::uint64_t value) { return static_cast<Eigen::Index>(value); };
@@ -159,12 +199,23 @@ void read_head(const nlohmann::json& head, std::size_t file_size, TransferModel&
   learned.space.mean.resize(index(3 * n.probes));
   learned.space.axes.resize(index(n.dimensions), index(3 * n.probes));
   learned.space.deviations.resize(index(n.dimensions));
-  learned.mean.resize(index(n.keys * sh::count));
+  learned.mean.resize(index(is_linear ? n.keys * sh::count : 0));
   learned.components.resize(learned.mean.size(), index(n.components));
   learned.linear.resize(index(n.components), index(n.dimensions + 1));
 }
 
-// The same for the network. Sizes that depend on the model are those of `model`.
+DiskChart chart_of_size(const nlohmann::json& about, std::size_t file_size) {
+  const std::uint64_t vertices = about.at("vertices"), faces = about.at("faces");
+  require_room(file_size, static_cast<double>(vertices), 2 * sizeof(double));
+  require_room(file_size, static_cast<double>(faces), sizeof(Face));
+  DiskChart chart;
+  chart.source.resize(vertices);
+  chart.uvs.resize(vertices);
+  chart.faces.resize(faces);
+  return chart;
+}
+
+// The same for a network. Sizes that depend on the model are those of `model`.
 UnetTransfer::State read_net_head(const nlohmann::json& head, std::size_t file_size, TransferModel& model) {
   UnetTransfer::State net;
   const auto& about = head.at("net");
@@ -176,16 +227,26 @@ UnetTransfer::State read_net_head(const nlohmann::json& head, std::size_t file_s
   constexpr int max_channels = 64;
   if (net.channels < 8 || net.channels > max_channels || net.channels % 8 != 0)
     throw Error("\"channels\" in the first line must be a multiple of 8 from 8 to 64");
-  const std::uint64_t vertices = about.at("vertices"), faces = about.at("faces");
-  require_room(file_size, static_cast<double>(vertices), 2 * sizeof(double));
-  require_room(file_size, static_cast<double>(faces), sizeof(Face));
   require_room(file_size, static_cast<double>(unet_weight_count(UnetForm::added, net.channels)), sizeof(float));
-  net.chart.source.resize(vertices);
-  net.chart.uvs.resize(vertices);
-  net.chart.faces.resize(faces);
+  require_room(file_size, static_cast<double>(model.keys.size()) * sh::count, sizeof(float));
+  net.chart = chart_of_size(about, file_size);
   net.weights.resize(unet_weight_count(UnetForm::added, net.channels));
-  net.mean.resize(model.learned.mean.size());
+  net.mean.resize(static_cast<Eigen::Index>(model.keys.size() * sh::count));
   return net;
+}
+
+// What a file has of a published network, besides its own bytes.
+struct PublishedHead {
+  DiskChart chart;
+  std::string network;
+  double seconds;
+};
+PublishedHead read_published_head(const nlohmann::json& head, std::size_t file_size, TransferModel& model) {
+  const auto& about = head.at("published");
+  const std::uint64_t bytes = about.at("bytes");
+  require_room(file_size, static_cast<double>(bytes), 1);
+  model.net_error = about.at("held_back_error");
+  return {chart_of_size(about, file_size), std::string(bytes, '\0'), about.at("learning_seconds")};
 }
 
 }  // namespace
@@ -203,15 +264,20 @@ TransferModel transfer_model_of(std::string_view bytes) {
   const std::string_view whole = bytes.substr(0, bytes.size() - sizeof(hash));
   const auto head =
       nlohmann::json::parse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(line), nullptr, false);
-  if (!head.is_object() || !head.contains("kind") || (head["kind"] != kind && head["kind"] != kind_with_net))
+  if (!head.is_object() || !head.contains("kind") ||
+      (head["kind"] != kind && head["kind"] != kind_with_both && head["kind"] != kind_with_net))
     throw Error("not a transfer model of a supported version. Train the model again.");
   if (content_hash(whole) != hash)
     throw Error("the file is damaged: wrong checksum. Train the model again, or copy it again.");
   TransferModel model;
   std::optional<UnetTransfer::State> net;
+  std::optional<PublishedHead> published;
   try {
     read_head(head, bytes.size(), model);
-    if (head["kind"] == kind_with_net) net = read_net_head(head, bytes.size(), model);
+    if (head.contains("published"))
+      published = read_published_head(head, bytes.size(), model);
+    else if (head["kind"] != kind)
+      net = read_net_head(head, bytes.size(), model);
   } catch (const nlohmann::json::exception&) {
     throw Error("a field in the first line is missing or has a wrong type");
   } catch (const std::logic_error&) {
@@ -220,6 +286,10 @@ TransferModel transfer_model_of(std::string_view bytes) {
   Reader reader(whole.substr(line + 1));
   visit_numbers(model, reader);
   if (net) visit_net(*net, reader);
+  if (published) {
+    visit_chart(published->chart, reader);
+    reader(published->network.data(), published->network.size());
+  }
   if (!reader.done()) throw Error("unexpected data after the end of the model");
   for (const std::uint32_t key : model.keys)
     if (key >= model.sites) throw Error("a site index is out of range");
@@ -227,6 +297,9 @@ TransferModel transfer_model_of(std::string_view bytes) {
     if (probe >= model.keys.size()) throw Error("a site index is out of range");
   try {
     if (net) model.net.emplace(std::move(*net));
+    if (published)
+      model.published.emplace(published->chart, model.keys.size(), DprtNetwork::parsed(published->network),
+                              published->seconds);
   } catch (const std::invalid_argument& error) {
     throw Error(error.what());
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh_ops/light/learned/dprt_transfer.h"
 #include "mesh_ops/light/learned/learned_transfer.h"
 #include "mesh_ops/light/learned/unet_transfer.h"
 
@@ -18,16 +19,24 @@ struct TransferModel {
   double tracing_seconds = 0;
   std::vector<std::uint32_t> keys;  ///< site indices
   std::vector<float> facing;        ///< per key: facing_of()
-  LearnedTransfer learned;  ///< linear model of the keys (rotated_linear); gives the trusted range also with a network
-  std::optional<UnetTransfer> net;  ///< predicts instead of `learned`, if present; its vertices are the keys
-  double net_error = 0;             ///< relative error of the network on the held-out poses
-  double turning_error = 0;         ///< the same by rotation alone; 0 if an older file does not contain it
+  /// Linear model of the keys (rotated_linear). With a network, only its pose space, which gives the trusted range, and
+  /// its error are kept.
+  LearnedTransfer learned;
+  /// Networks that predict instead of `learned`, at most one; their vertices are the keys.
+  std::optional<UnetTransfer> net;
+  std::optional<DprtTransfer> published;
+  double net_error = 0;      ///< relative error of the network on the held-out poses
+  double turning_error = 0;  ///< the same by rotation alone; 0 if an older file does not contain it
   /// Relative error on the held-out poses.
-  double error() const { return net ? net_error : learned.held_back_error; }
+  double error() const { return has_network() ? net_error : learned.held_back_error; }
+  bool has_network() const { return net || published; }
+  std::uint64_t memory() const;
+  double training_seconds() const;  ///< without tracing
 
-  /// 16 coefficients per key in rotated frames. `place`: the pose in pose space; `keys_there`: the key sites in that
-  /// pose.
-  Eigen::VectorXf predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there) const;
+  /// 16 coefficients per key in rotated frames. `place`: the pose in pose space; `keys_there`, `turns`: the key sites
+  /// in that pose, and the rotations of the surface around them since rest.
+  Eigen::VectorXf predict(const PoseSpace::Place& place, const std::vector<LightSite>& keys_there,
+                          const std::vector<Mat3>& turns) const;
 };
 
 /// Serialised form: a line of human-readable JSON, then numbers, then a hash over all.

@@ -36,21 +36,15 @@ void append_image(const GeometryImage& image, const Box& box, const std::vector<
 }
 
 void check(const UnetTransfer::State& state) {
-  const auto all = [](const auto& values, auto holds) { return std::all_of(values.begin(), values.end(), holds); };
   const auto vertices = static_cast<std::size_t>(state.mean.size()) / sh::count;
   const bool fits =
-      state.side >= 64 && state.side <= 1024 && state.chart.uvs.size() == state.chart.source.size() && vertices > 0 &&
+      state.side >= 64 && state.side <= 1024 && vertices > 0 &&
       static_cast<std::size_t>(state.mean.size()) == vertices * sh::count && !state.box.isEmpty() &&
       state.box.min().allFinite() && state.box.max().allFinite() && state.mean.allFinite() &&
-      std::isfinite(state.scale) && all(state.weights, [](float weight) { return std::isfinite(weight); }) &&
-      // Each vertex must have a place in the image.
-      !state.chart.source.empty() &&
-      *std::max_element(state.chart.source.begin(), state.chart.source.end()) + 1 == vertices &&
-      all(state.chart.uvs,
-          [](const Vec2& uv) { return uv.allFinite() && uv.minCoeff() >= -1e-9 && uv.maxCoeff() <= 1 + 1e-9; }) &&
-      all(state.chart.faces,
-          [&](const Face& face) { return all(face, [&](std::uint32_t v) { return v < state.chart.source.size(); }); });
-  if (!fits) throw std::invalid_argument("the sizes of the image, the mean and the chart of a U-Net do not match");
+      std::isfinite(state.scale) &&
+      std::all_of(state.weights.begin(), state.weights.end(), [](float weight) { return std::isfinite(weight); });
+  if (!fits) throw std::invalid_argument("the sizes of the image and the mean of a U-Net do not match");
+  check_chart(state.chart, vertices);
 }
 
 }  // namespace

@@ -46,6 +46,12 @@ std::vector<LightSite> keys_of(const TransferModel& model, const std::vector<Lig
   return keys;
 }
 
+std::vector<Mat3> turns_of(const TransferModel& model, const std::vector<Mat3>& turns) {
+  std::vector<Mat3> keys;
+  for (const std::uint32_t k : model.keys) keys.push_back(turns[k]);
+  return keys;
+}
+
 }  // namespace
 
 std::vector<Mat3> node_rotations(const TextureSet& from, const TextureSet& to, const LightChart& chart) {
@@ -136,7 +142,7 @@ void DragLight::prepare_model() {
       since_baked_.push_back(turn);
   const PoseSpace::Place place = model.learned.space.place(probes_on(*start_.object));
   if (!(place.range <= LearnedTransfer::trusted_range)) return;
-  learned_ = model.predict(place, keys_of(model, start_.sites.now));
+  learned_ = model.predict(place, keys_of(model, start_.sites.now), turns_of(model, since_baked_));
   // Interpolation from the nearest four keys with a similar normal and the same visible side.
   const auto shown_normal = [&](std::size_t i, float facing) -> Vec3 {
     return facing == 0.0F ? Vec3(-start_.sites.baked[i].normal) : start_.sites.baked[i].normal;
@@ -200,8 +206,15 @@ void DragLight::add_learned(const BakedObject& object, const std::vector<std::ve
   constexpr double fades = 0.5;
   const double share = std::min(1.0, (LearnedTransfer::trusted_range - place.range) / fades);
   if (!(share > 0)) return;
+  std::vector<Mat3> since_rest = since_baked_;
+  for (std::size_t s = 0; s < turns.size(); ++s)
+    for (std::size_t k = 0; k < turns[s].size(); ++k) {
+      Mat3& turn = since_rest[start_.sites.first[s] + k];
+      turn = turns[s][k] * turn;
+    }
+  const TransferModel& model = *start_.model;
   const Eigen::VectorXf change =
-      static_cast<float>(share) * (start_.model->predict(place, keys_of(*start_.model, sites)) - learned_);
+      static_cast<float>(share) * (model.predict(place, keys_of(model, sites), turns_of(model, since_rest)) - learned_);
   for (std::size_t s = 0; s < turns.size(); ++s)
     tbb::parallel_for(std::size_t{0}, turns[s].size(), [&](std::size_t k) {
       const std::size_t i = start_.sites.first[s] + k;
@@ -209,7 +222,7 @@ void DragLight::add_learned(const BakedObject& object, const std::vector<std::ve
       for (std::size_t j = 0; j < 4; ++j)
         own += shares_[i].weights[j] *
                change.segment<sh::count>(static_cast<Eigen::Index>(shares_[i].keys[j]) * sh::count);
-      light[i] += products_[start_.sites.body[i]](turns[s][k] * since_baked_[i], own.cast<double>());
+      light[i] += products_[start_.sites.body[i]](since_rest[i], own.cast<double>());
     });
 }
 

@@ -84,7 +84,8 @@ TEST_F(LightModel, RefusesWhatCannotBeTrained) {
   expect_error(R"({"op": "train_light", "edits": [{"op": "bnd"}]})", "bnd");
   expect_error(R"({"op": "train_light", "edits": [{"op": "remove", "node": "ball"}]})", "removes the object");
   expect_error(R"({"op": "train_light", "edits": [{"op": "bend", "degrees": 9}], "poses": 3})", "poses");
-  expect_error(R"({"op": "train_light", "edits": [{"op": "bend", "degrees": 9}], "way": "deep"})", "deep");
+  expect_error(R"({"op": "train_light", "edits": [{"op": "bend", "degrees": 9}], "way": "deep"})",
+               "linear, net or published");
   expect_error(R"({"op": "train_light", "edits": [{"op": "bend", "degrees": 9}], "way": "net", "channels": 9})",
                "multiple of 8");
 }
