@@ -3,6 +3,7 @@
 #include <random>
 
 #include "editor/studies/study.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 
@@ -87,6 +88,13 @@ StudyTable study_decoder(const StudyInput& input) {
   StudyTable table = picture_table();
   for (const Choice& choice : choices)
     table.rows.push_back(measured(one, choice.name, one.view, choice.options, reference));
+  try {
+    table.rows.push_back(
+        measured(one, "constants, 16-bit floats", one.view,
+                 options_of(Weights::constants, Shading::deferred, Precision::half, Arithmetic::halves), reference));
+  } catch (const DeviceError& error) {
+    input.say(fmt::format("there is no row of 16-bit floats: {}", error.what()));
+  }
   for (const int width : {8, 16, 32, 64}) {
     const Scene scene = with_decoder(input.scene, random_decoder(width));
     const StudyInput wide{one.renderer, scene, one.view, one.frames, one.progress};

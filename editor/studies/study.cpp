@@ -9,9 +9,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "render/compare.h"
 
 namespace rebake {
@@ -203,6 +205,24 @@ std::filesystem::path own_folder(const StudyInput& input, const std::string& stu
   return folder;
 }
 
+namespace {
+
+constexpr const char* endings_of_plots[] = {".svg", ".png", "-2.svg", "-2.png"};
+
+// Content hashes of the plots that an earlier run wrote, by file name.
+nlohmann::json written_plots(const std::string& base) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(base + ".json", error)) return nlohmann::json::object();
+  const nlohmann::json record = nlohmann::json::parse(read_file(base + ".json"), nullptr, false);
+  if (!record.is_object() || record.value("software", nlohmann::json()) != "Rebake" || !record.contains("plots"))
+    throw FileError(base + ".json", "is not the record of an earlier study; choose another folder");
+  return record.at("plots");
+}
+
+std::string hash_at(const std::filesystem::path& file) { return hash_text(content_hash(read_file(file))); }
+
+}  // namespace
+
 void prepare_study_folder(const Study& study, const std::filesystem::path& folder, const SourceGuard& guard) {
   guard.check_file(folder / study.name);
   std::error_code error;
@@ -210,18 +230,22 @@ void prepare_study_folder(const Study& study, const std::filesystem::path& folde
   if (error) throw FileError(folder, "cannot be created: " + error.message());
   if (::access(folder.c_str(), W_OK) != 0) throw FileError(folder, "cannot be written to");
   const std::string base = (folder / study.name).string();
-  for (const char* ending : {".csv", ".svg", ".png", "-2.svg", "-2.png"}) {
+  for (const char* ending : {".csv", ".json", ".svg", ".png", "-2.svg", "-2.png"}) {
     guard.check_file(base + ending);
     if (std::filesystem::is_symlink(base + ending, error))
       throw FileError(base + ending, "is a symbolic link; remove it, since the study would overwrite its target");
   }
-  const bool has_table = std::filesystem::exists(base + ".csv", error);
-  if (has_table && !read_file(base + ".csv").starts_with("choice,"))
+  if (std::filesystem::exists(base + ".csv", error) && !read_file(base + ".csv").starts_with("choice,"))
     throw FileError(base + ".csv", "is not a table of an earlier study; choose another folder");
-  for (const char* ending : {".svg", ".png", "-2.svg", "-2.png"})
-    if (!has_table && std::filesystem::exists(base + ending, error))
-      throw FileError(base + ending,
-                      "is not a plot of an earlier study, because its table is missing; choose another folder");
+  const nlohmann::json known = written_plots(base);
+  for (const char* ending : endings_of_plots)
+    if (const std::filesystem::path plot = base + ending; std::filesystem::exists(plot, error)) {
+      const auto hash = known.find(plot.filename().string());
+      if (hash == known.end() || *hash != hash_at(plot))
+        throw FileError(plot,
+                        "was not written by an earlier study, or was changed since; move it, or choose another "
+                        "folder");
+    }
 }
 
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
@@ -239,6 +263,12 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
   write_file_atomically(base + ".csv", csv, guard);
   write_plot(study, table, table.x, base, guard);
   if (table.second_x) write_plot(study, table, *table.second_x, base + "-2", guard);
+  nlohmann::json plots = nlohmann::json::object();
+  std::error_code error;
+  for (const char* ending : endings_of_plots)
+    if (const std::filesystem::path plot = base + ending; std::filesystem::exists(plot, error))
+      plots[plot.filename().string()] = hash_at(plot);
+  write_file_atomically(base + ".json", nlohmann::json{{"software", "Rebake"}, {"plots", plots}}.dump(), guard);
 }
 
 }  // namespace rebake

@@ -245,6 +245,16 @@ void read_in_pieces(const fs::path& path, const std::function<void(std::string_v
   }
 }
 
+void check_parents(const fs::path& path) {
+  fs::path before;
+  for (const fs::path& part : path) {
+    std::error_code error;
+    if (part == ".." && !before.empty() && !fs::is_directory(before, error))
+      throw FileError(path, "cannot be written: \"" + before.string() + "\" is not a folder");
+    before /= part;
+  }
+}
+
 fs::path absolute_path(const fs::path& path) {
   fs::path result = fs::absolute(path);
   if (std::find(result.begin(), result.end(), "..") != result.end()) {
@@ -302,6 +312,9 @@ bool is_partial_of(const std::string& name, const std::string& of) {
 }
 
 void write_file_atomically(const fs::path& named, std::string_view bytes, const SourceGuard& guard) {
+  if (const fs::path name = named.filename(); name.empty() || name == "." || name == "..")
+    throw FileError(named, "must be the name of a file, without a slash or dot at its end");
+  check_parents(named);
   guard.check_file(named);
   const fs::path path = followed(named);
   std::error_code error;
@@ -347,6 +360,7 @@ AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
     : guard_(guard), may_replace_(may_replace) {
   if (target.empty()) throw FieldError("out", "is empty; name a folder to write to");
   guard.check_folder(target);
+  check_parents(target);
   target_ = followed(target);
   std::error_code error;
   if (fs::exists(target_, error)) {

@@ -32,6 +32,10 @@ class FileBytes {
 /// Calls `use` with the contents of a regular file in pieces of at most 1 MiB. Throws FileError.
 void read_in_pieces(const std::filesystem::path& path, const std::function<void(std::string_view piece)>& use);
 
+/// Throws FileError if ".." follows a component that is no folder. The system finds no file at such a path, so checks
+/// of what is there would pass, while its resolved form may lead to a file.
+void check_parents(const std::filesystem::path& path);
+
 /// Absolute path without "." components and without a trailing slash. Symbolic links are resolved only if the path
 /// contains "..", because ".." starts from the link's target.
 std::filesystem::path absolute_path(const std::filesystem::path& path);

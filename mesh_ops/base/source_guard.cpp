@@ -7,6 +7,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
+#include "mesh_ops/base/files.h"
 
 namespace rebake {
 
@@ -163,6 +164,7 @@ const SourceGuard::Source* SourceGuard::source_holding(const fs::path& wanted) c
 }
 
 void SourceGuard::check_file(const fs::path& path) const {
+  check_parents(path);
   const fs::path wanted = plain_path(path);
   if (const Source* source = source_holding(wanted))
     throw FileError(path, source->is_folder

@@ -31,7 +31,8 @@ struct RenderOptions {
   enum class Arithmetic {
     scalars,      ///< constants: a sum of products per neuron, without those of zero weights
     all_scalars,  ///< the same with zero weights
-    vectors       ///< constants: products of 4×4 matrices and vectors, without matrices of zeros
+    vectors,      ///< constants: products of 4×4 matrices and vectors, without matrices of zeros
+    halves        ///< as scalars, in 16-bit floats; throws DeviceError if the driver does not compute them
   };
   enum class Occlusion {
     automatic,  ///< on if it is expected to pay, from the device and the last measured result

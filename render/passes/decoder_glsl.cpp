@@ -26,20 +26,25 @@ void for_each_neuron(const Decoder& d,
 using Arithmetic = RenderOptions::Arithmetic;
 
 // Statements that compute c0, c1 and c2, the outputs before the logistic function: one per neuron.
-std::string scalar_layers(const Decoder& decoder, RenderOptions::Precision precision, bool zeros) {
+std::string scalar_layers(const Decoder& decoder, RenderOptions::Precision precision, Arithmetic arithmetic) {
   static const char* const inputs[] = {"low.x",  "low.y",  "low.z", "low.w", "high.x", "high.y",
                                        "high.z", "high.w", "ray.x", "ray.y", "ray.z"};
+  const bool halves = arithmetic == Arithmetic::halves;
+  const std::string type = halves ? "float16_t" : "float", suffix = halves ? "hf" : "";
   std::string out;
+  if (halves)
+    for (std::size_t k = 0; k < std::size(inputs); ++k)
+      out += fmt::format("  float16_t x{} = float16_t({});\n", k, inputs[k]);
   for_each_neuron(decoder, [&](int layer, Eigen::Index j, double bias, const Eigen::VectorXd& weights) {
-    out += fmt::format("  float {}{} = ", "abc"[layer], j);
-    std::string sum = fmt::format("{:.9e}", rounded(bias, precision));
+    out += fmt::format("  {} {}{} = ", type, "abc"[layer], j);
+    std::string sum = fmt::format("{:.9e}{}", rounded(bias, precision), suffix);
     for (Eigen::Index i = 0; i < weights.size(); ++i) {
       const float w = rounded(weights[i], precision);
-      if (w == 0 && !zeros) continue;
-      sum += layer == 0 ? fmt::format(" + {:.9e} * {}", w, inputs[i])
-                        : fmt::format(" + {:.9e} * {}{}", w, "ab"[layer - 1], i);
+      if (w == 0 && arithmetic != Arithmetic::all_scalars) continue;
+      sum += layer == 0 && !halves ? fmt::format(" + {:.9e} * {}", w, inputs[i])
+                                   : fmt::format(" + {:.9e}{} * {}{}", w, suffix, "xab"[layer], i);
     }
-    out += layer < 2 ? fmt::format("max({}, 0.0);\n", sum) : sum + ";\n";
+    out += layer < 2 ? fmt::format("max({}, 0.0{});\n", sum, suffix) : sum + ";\n";
   });
   return out;
 }
@@ -91,7 +96,7 @@ std::string vector_layers(const Decoder& d, RenderOptions::Precision precision) 
 
 std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decoder>>& decoders,
                                    RenderOptions::Precision precision, RenderOptions::Arithmetic arithmetic) {
-  std::string out;
+  std::string out = arithmetic == Arithmetic::halves ? fmt::format("#extension {} : require\n", half_extension) : "";
   for (std::size_t k = 0; k < decoders.size(); ++k) {
     const ColorRule rule = decoders[k]->rule;
     out += fmt::format("vec3 decode_{}(vec4 low, vec4 high, vec3 ray) {{\n", k);
@@ -101,9 +106,8 @@ std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decod
     }
     if (rule == ColorRule::diffuse_and_network)
       out += "  float share = low.x;\n  low /= share;\n  high /= share;\n  ray /= share;\n";
-    out += arithmetic == Arithmetic::vectors
-               ? vector_layers(*decoders[k], precision)
-               : scalar_layers(*decoders[k], precision, arithmetic == Arithmetic::all_scalars);
+    out += arithmetic == Arithmetic::vectors ? vector_layers(*decoders[k], precision)
+                                             : scalar_layers(*decoders[k], precision, arithmetic);
     out += rule == ColorRule::network ? "  return 1.0 / (1.0 + exp(-vec3(c0, c1, c2)));\n}\n"
                                       : "  return min(low.yzw + 1.0 / (1.0 + exp(-vec3(c0, c1, c2))), 1.0);\n}\n";
   }

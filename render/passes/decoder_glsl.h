@@ -8,6 +8,9 @@
 
 namespace rebake {
 
+/// The OpenGL extension that Arithmetic::halves needs.
+inline constexpr const char* half_extension = "GL_AMD_gpu_shader_half_float";
+
 /// GLSL text of `vec3 decode(int k, vec4 low, vec4 high, vec3 ray)` with weights as literals.
 std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decoder>>& decoders,
                                    RenderOptions::Precision precision,

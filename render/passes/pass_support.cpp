@@ -7,6 +7,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <numbers>
 
+#include "mesh_ops/base/error.h"
 #include "render/graph/changed_pixels.h"
 #include "render/passes/decoder_glsl.h"
 #include "render/passes/gloss_uniforms.h"
@@ -37,6 +38,8 @@ bool reversed_depth() {
   // Queried on each call, because threads may draw in contexts of different drivers.
   return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
 }
+
+bool computes_halves() { return epoxy_has_gl_extension(half_extension); }
 
 Eigen::Matrix4d projection(const View& view) {
   const double f = 1 / half_height(view.camera, 1);
@@ -78,6 +81,8 @@ std::string decoder_preamble(const PassInput& input) {
   if (plan.options.weights == RenderOptions::Weights::constants) {
     DecoderText& made = input.state.text;
     const RenderOptions& options = plan.options;
+    if (options.arithmetic == RenderOptions::Arithmetic::halves && !computes_halves())
+      throw DeviceError(fmt::format("the OpenGL driver does not compute in 16-bit floats ({})", half_extension));
     if (made.text.empty() || made.decoders != plan.decoders || made.precision != options.precision ||
         made.arithmetic != options.arithmetic)
       made = {plan.decoders, options.precision, options.arithmetic,

@@ -47,6 +47,8 @@ std::string texel_preamble(const PassInput& input, const Draw& draw);
 
 /// Whether depth is reversed: 1 at the near plane, 0 at the far plane. Without clip control it is −1 … 1.
 bool reversed_depth();
+/// Whether the driver computes in 16-bit floats (RenderOptions::Arithmetic::halves).
+bool computes_halves();
 /// Matrix from camera to clip space.
 Eigen::Matrix4d projection(const View& view);
 /// Factor and offset that map depth z / w in clip space to nearness: 1 at the near plane, 0 at the far plane.

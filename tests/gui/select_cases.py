@@ -203,3 +203,56 @@ class SelectTest(WindowCase):
             orange = coloured & (picture[..., 0] > picture[..., 1]) & (picture[..., 1] > picture[..., 2])
             self.assertGreater(orange.sum() / max(1, coloured.sum()), 0.7, editor.last_edit()["camera"])
             editor.key("v")
+
+    def three_kettles(self):
+        """Three kettles, of which some triangles are selected in each; nothing is picked."""
+        editor = self.open(KETTLE, KETTLE, KETTLE)
+        editor.until_ops("import", "import", "import")
+        editor.key("Escape", "Escape", "r")
+        editor.drag([editor.in_viewport(0.2, 0.2), editor.in_viewport(0.8, 0.5)])
+        self.assertGreater(editor.state()["selected"], 0)
+        names = sorted(item.split("/")[1] for item in editor.state()["items"]
+                       if item.startswith("outline/") and item.endswith("/name"))
+        return editor, names
+
+    def test_a_locked_picked_node_does_not_stand_for_the_scene(self):
+        editor, names = self.three_kettles()
+        editor.click(f"outline/{names[1]}/name")
+        editor.click(f"outline/{names[1]}/Locked")
+        editor.click(f"outline/{names[1]}/name")
+        steps = editor.state()["steps"]
+        self.assertEqual(editor.state()["selected"], 0)
+        editor.key("1")
+        self.assertNotIn("gizmo/middle", editor.state()["items"])
+        editor.drag([editor.in_viewport(0.5, 0.5), editor.in_viewport(0.6, 0.5)])
+        editor.key("r")
+        editor.drag([editor.in_viewport(0.2, 0.2), editor.in_viewport(0.8, 0.8)])
+        self.assertIn("no visible, unlocked object", " ".join(editor.state()["messages"]))
+        editor.key("o")
+        editor.click(*editor.in_viewport(0.5, 0.5))
+        self.assertEqual(editor.state()["steps"], steps)
+
+    def test_a_cage_of_two_picked_nodes_is_refused_if_a_third_has_a_selection(self):
+        editor, names = self.three_kettles()
+        editor.click(f"outline/{names[0]}/name")
+        editor.click(f"outline/{names[1]}/name", held="ctrl")
+        steps = editor.state()["steps"]
+        editor.key("c")
+        editor.click("options/make-cage")
+        self.assertIn("Pick one node, or none", " ".join(editor.state()["messages"]))
+        self.assertEqual(editor.state()["steps"], steps)
+
+    def test_separate_without_a_picked_node_takes_all_that_is_selected(self):
+        editor, _ = self.three_kettles()
+        editor.key("ctrl+j")
+        self.assertEqual(editor.ops()[-1], "separate")
+        self.assertEqual(editor.state()["steps"], 5)
+
+    def test_forms_count_the_scope(self):
+        editor, names = self.three_kettles()
+        editor.click(f"outline/{names[0]}/name")
+        here = editor.state()["selected"]
+        editor.command("select floaters")
+        counts = lambda: [item for item in editor.state()["items"] if item.startswith("form/count: Would")]
+        until(counts, "a count")
+        self.assertIn(f"(currently {here})", counts()[0])

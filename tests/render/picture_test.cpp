@@ -179,6 +179,20 @@ TEST(Picture, AnyArithmeticOfConstantsIsTheSamePicture) {
     }
 }
 
+TEST(Picture, SixteenBitFloatsComeNearOrAreRefusedByName) {
+  const Scene scene = scene_of(made_object());
+  const View view = view_from({0, 1, 3}, 1);
+  RenderOptions options;
+  options.weights = RenderOptions::Weights::constants;
+  const Image reference = renderer().render(scene, view, options);
+  options.arithmetic = RenderOptions::Arithmetic::halves;
+  try {
+    EXPECT_GT(compare(renderer().render(scene, view, options), reference, 0).psnr_db, 40);
+  } catch (const DeviceError& error) {
+    EXPECT_NE(std::string(error.what()).find("GL_AMD_gpu_shader_half_float"), std::string::npos);
+  }
+}
+
 TEST(Picture, ForwardShadingIsTheSamePicture) {
   const Scene scene = together(
       {placed(made_object({.seed = 1}), moved(-0.4, 0, 0)), placed(made_object({.seed = 2}), moved(0.5, 0.2, 0.3))});

@@ -58,7 +58,13 @@ Ground wanted_ground(const Scene& scene, const GroundEdit& edit) {
     if (box.isEmpty()) throw EditError("nothing is visible, so there is no lowest point");
     return {Vec3::UnitY(), box.min().y()};
   }
-  if (edit.selection) return fitted(objects_with_selection(scene, std::nullopt));
+  if (edit.selection && edit.nodes.empty()) return fitted(objects_with_selection(scene, std::nullopt));
+  if (edit.selection) {
+    std::vector<PlacedNode> nodes;
+    for (const NodeRef& node : edit.nodes)
+      for (PlacedNode& placed : objects_with_selection(scene, node)) nodes.push_back(std::move(placed));
+    return fitted(nodes);
+  }
   if (edit.points.points.size() != 3)
     throw FieldError("points", fmt::format("must be three points, but has {}", edit.points.points.size()));
   try {
@@ -74,6 +80,7 @@ Outcome apply(const Scene& scene, const GroundEdit& edit) {
   const int given =
       (edit.height ? 1 : 0) + (edit.foot ? 1 : 0) + (edit.selection ? 1 : 0) + (edit.points.points.empty() ? 0 : 1);
   if (given != 1) throw EditError("exactly one of height, foot, selection and points must be given");
+  if (!edit.nodes.empty() && !edit.selection) throw FieldError("nodes", "can be given with selection only");
   Scene result = scene;
   set_ground(result, wanted_ground(scene, edit));
   const Vec3 up = result.ground.normal;
@@ -93,6 +100,8 @@ REBAKE_DESCRIBE_EDIT(
       visit("height", edit.height, Need::optional, "level plane at this y", Unit::length);
       visit("foot", edit.foot, Need::optional, "level plane at the lowest point of all visible objects");
       visit("selection", edit.selection, Need::optional, "least-squares plane of the selected triangles");
+      visit("nodes", edit.nodes, Need::optional,
+            "with selection: only triangles of these nodes; default: of all visible, unlocked nodes");
       visit("points", edit.points, Need::optional, "plane through three points");
     })
 

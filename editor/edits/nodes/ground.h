@@ -11,6 +11,7 @@ struct GroundEdit {
   std::optional<double> height;  ///< level plane at this y
   bool foot = false;             ///< level plane at the lowest point of all visible objects
   bool selection = false;        ///< least-squares plane of the selected triangles
+  std::vector<NodeRef> nodes;    ///< with `selection`: only triangles of these nodes; empty: of all
   PolyLine points;               ///< plane through three points
 };
 template <>

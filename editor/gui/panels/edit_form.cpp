@@ -30,11 +30,17 @@ const FieldInfo* field_named(const std::vector<FieldInfo>& fields, const char* n
   return found == fields.end() ? nullptr : &*found;
 }
 
-// Selected triangles that other edits change: not those in hidden and locked nodes.
-std::size_t selected_in(const Scene& scene) {
+// Selected triangles of the scope's nodes, or of `only` and what is in it, in a scene or a preview of it.
+std::size_t selected_in(const DocumentEditor& editor, const Scene& scene, NodeId only) {
+  const auto counts = [&](const PlacedNode& placed) {
+    if (only == NodeId::none) return editor.in_scope(scene, placed);
+    NodeId at = placed.node->id;
+    while (at != NodeId::none && at != only) at = parent_of(scene, at);
+    return at == only && placed.visible && !placed.locked;
+  };
   std::size_t triangles = 0;
   for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->selection && placed.visible && !placed.locked) triangles += count(*placed.node->selection);
+    if (placed.node->selection && counts(placed)) triangles += count(*placed.node->selection);
   return triangles;
 }
 
@@ -73,6 +79,12 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
   };
   if (editor.active.empty()) {
     if (!node->required && (!takes_selection || selection)) return {line};
+    if (selection) {
+      std::vector<json> selected;
+      for (const NodeId one : editor.nodes_in_scope(true)) selected.push_back(with_node(one));
+      if (selected.empty()) throw EditError("nothing is selected");
+      return selected;
+    }
     // Nothing is picked, but the edit needs a node: use the first visible object.
     for (const PlacedNode& placed : placed_nodes(editor.scene()))
       if (placed.visible && placed.node->object) return {with_node(placed.node->id)};
@@ -116,9 +128,13 @@ void EditForm::draw_count(const DocumentEditor& editor) const {
   if (!type_named(op_)->selects || !previews_ || !problem_.empty()) return;
   const bool there = editor.preview && editor.preview->of == editor.scene().roots;
   std::string text = "Counting...";
+  const json values = inputs_.values();
+  const auto node = values.find("node");
+  const NodeId only = node != values.end() ? Codec<NodeRef>::read(*node, editor.scene()).id : NodeId::none;
   if (there)
-    text = fmt::format("Would select {} (currently {})", triangles_text(selected_in(editor.preview->scene)),
-                       selected_in(editor.scene()));
+    text =
+        fmt::format("Would select {} (currently {})", triangles_text(selected_in(editor, editor.preview->scene, only)),
+                    selected_in(editor, editor.scene(), only));
   // The preview is that of earlier fields.
   if (const std::string problem = editor.previews.problem(); !editor.previews.busy() && !problem.empty())
     text = problem;

@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "editor/document/replaced_work.h"
 #include "editor/document/sample_folder.h"
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/nodes/light.h"
@@ -33,6 +34,13 @@ namespace rebake {
 namespace fs = std::filesystem;
 
 namespace {
+
+// Whether two paths lead to the same file, also if it does not exist.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return !a.empty() && !b.empty() &&
+         (fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) || fs::equivalent(a, b, error));
+}
 
 // The fields of an import that describe the folder.
 std::vector<FieldInfo> import_fields() {
@@ -121,8 +129,8 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       break;
     case FileDialogPurpose::save_project:
       // Replacing another project was confirmed.
-      editor.project.save(
-          path, path == editor.project.path ? Document::OtherProject::keep_more : Document::OtherProject::replace);
+      editor.project.save(path, is_same_file(path, editor.project.path) ? Document::OtherProject::keep_more
+                                                                        : Document::OtherProject::replace);
       break;
     case FileDialogPurpose::save_scene:
       editor.project.save_scene(path);
@@ -134,6 +142,7 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       editor.project.publish(path, editor.view.camera);
       break;
     case FileDialogPurpose::screenshot:
+      refuse_replacing_work(path);
       editor.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
       break;
     case FileDialogPurpose::turntable:

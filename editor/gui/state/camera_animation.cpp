@@ -3,23 +3,47 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "editor/document/replaced_work.h"
 #include "editor/film/video.h"
 #include "editor/gui/state/settings.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "render/image.h"
 
 namespace rebake {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// Throws FileError unless a folder is new, empty, or holds pictures of an earlier animation only.
+void refuse_other_content(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error)) return;
+  if (!fs::is_directory(folder, error)) throw FileError(folder, "is a file; name a folder, or a .mp4 file");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().stem().string();
+    if (entry.is_symlink() || !entry.is_regular_file() || entry.path().extension() != ".png" ||
+        name.find_first_not_of("0123456789") != std::string::npos || !is_rendered_picture(entry.path()))
+      throw FileError(folder, fmt::format("contains \"{}\", which is not a picture of an animation; choose a new or "
+                                          "empty folder",
+                                          entry.path().filename().string()));
+    refuse_replacing_work(entry.path());
+  }
+}
+
+}  // namespace
 
 CameraAnimation::CameraAnimation(fs::path out, int width, int height, std::vector<Camera> cameras,
                                  const SourceGuard& sources)
     : out_(std::move(out)), width_(width), height_(height), cameras_(std::move(cameras)) {
   if (out_.extension() != ".mp4") {
     sources.check_folder(out_);
+    refuse_other_content(out_);
     pictures_ = out_;
   } else {
     sources.check_file(out_);
+    refuse_replacing_work(out_);
     check_can_encode(out_, false);
     pictures_ = cache_folder() / fmt::format("film-{}", ::getpid());
     std::error_code nothing;

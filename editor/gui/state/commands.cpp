@@ -93,6 +93,7 @@ template <bool GroundEdit::*from>
 void set_ground(EditorContext& editor) {
   GroundEdit edit;
   edit.*from = true;
+  if (edit.selection) edit.nodes = editor.selected_nodes_if_picked();
   editor.edit(edit);
 }
 
@@ -138,12 +139,11 @@ void show_all(EditorContext& editor) {
 
 void separate(EditorContext& editor) {
   std::vector<Edit> list;
-  for (const std::optional<NodeRef>& node : editor.scope(true))
-    if (node) {
-      Separate edit;
-      edit.node = *node;
-      list.emplace_back(edit);
-    }
+  for (const NodeId node : editor.nodes_in_scope(true)) {
+    Separate edit;
+    edit.node = NodeRef{node};
+    list.emplace_back(edit);
+  }
   editor.edits(list);
 }
 

@@ -274,15 +274,35 @@ std::vector<std::optional<NodeRef>> DocumentEditor::scope(bool selected) const {
   return nodes;
 }
 
-bool DocumentEditor::in_scope(const PlacedNode& placed) const {
-  return placed.visible && !placed.locked && is_picked(placed);
+std::set<NodeId> DocumentEditor::nodes_in_scope(bool selected) const {
+  std::set<NodeId> nodes;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (in_scope(placed) && (!selected || selected_.contains(placed.node->id))) nodes.insert(placed.node->id);
+  return nodes;
 }
 
-bool DocumentEditor::is_picked(const PlacedNode& placed) const {
+std::vector<NodeRef> DocumentEditor::selected_nodes_if_picked() const {
+  std::vector<NodeRef> nodes;
+  if (active.empty()) return nodes;
+  for (const NodeId node : nodes_in_scope(true)) nodes.push_back(NodeRef{node});
+  return nodes;
+}
+
+bool DocumentEditor::in_scope(const Scene& in, const PlacedNode& placed) const {
+  return placed.node->object && placed.visible && !placed.locked && is_picked(in, placed);
+}
+
+bool DocumentEditor::is_picked(const Scene& in, const PlacedNode& placed) const {
   bool inside = active.empty() || active.contains(placed.node->id);
-  for (NodeId up = parent_of(scene(), placed.node->id); up != NodeId::none && !inside; up = parent_of(scene(), up))
+  for (NodeId up = parent_of(in, placed.node->id); up != NodeId::none && !inside; up = parent_of(in, up))
     inside = active.contains(up);
   return inside;
+}
+
+void DocumentEditor::say_why_nothing(bool needs_selection) {
+  messages.say(nodes_in_scope().empty() ? "There is no visible, unlocked object " + scope_words() + "."
+               : needs_selection        ? "Nothing is selected " + scope_words() + "."
+                                        : "There is nothing to edit " + scope_words() + ".");
 }
 
 std::size_t DocumentEditor::selected_triangles() const {
@@ -307,7 +327,7 @@ std::string DocumentEditor::selected_words() const {
   for (const PlacedNode& placed : placed_nodes(scene())) {
     const auto found = selected_.find(placed.node->id);
     if (found == selected_.end()) continue;
-    (in_scope(placed) ? here : is_picked(placed) ? untouchable : elsewhere) += found->second;
+    (in_scope(placed) ? here : is_picked(scene(), placed) ? untouchable : elsewhere) += found->second;
   }
   if (here + untouchable + elsewhere == 0) return "";
   std::string words = fmt::format("{} selected", here);
@@ -334,13 +354,32 @@ std::vector<DeformTarget> DocumentEditor::deform_targets() const {
     }
   if (!targets.empty()) return targets;
   for (const PlacedNode& placed : placed_nodes(scene()))
-    if (placed.visible && !placed.locked && placed.node->object &&
-        (active.empty() || active.contains(placed.node->id))) {
+    if (in_scope(placed)) {
       targets.emplace_back();
       targets.back().node = NodeRef{placed.node->id};
       break;
     }
   return targets;
+}
+
+std::optional<DeformTarget> DocumentEditor::one_deform_target() {
+  const std::vector<DeformTarget> targets = deform_targets();
+  if (targets.empty()) {
+    say_why_nothing(false);
+    return std::nullopt;
+  }
+  if (targets.size() == 1) return targets.front();
+  // Without a node, an edit takes all selected triangles of visible, unlocked nodes.
+  std::size_t all = 0;
+  for (const PlacedNode& placed : placed_nodes(scene()))
+    if (placed.node->object && placed.visible && !placed.locked && selected_.contains(placed.node->id)) ++all;
+  if (all == targets.size()) {
+    DeformTarget everything = targets.front();
+    everything.node.reset();
+    return everything;
+  }
+  messages.say("This tool works on one picked node, or on all selected triangles. Pick one node, or none.");
+  return std::nullopt;
 }
 
 std::set<NodeId> DocumentEditor::deform_nodes() const {

@@ -57,12 +57,22 @@ struct DocumentEditor {
       wanted.node = node;
       list.emplace_back(wanted);
     }
-    edits(list);
+    if (list.empty())
+      say_why_nothing(edit_type<T>().needs_selection);
+    else
+      edits(list);
   }
   /// Nodes that commands work on: visible, unlocked nodes with an object that are picked or inside picked groups. With
   /// `selected`, only those with selected triangles. If nothing is picked: one empty entry, which stands for all
   /// visible, unlocked nodes.
   std::vector<std::optional<NodeRef>> scope(bool selected = false) const;
+  /// The nodes of scope() by name, also if nothing is picked; empty if there are none.
+  std::set<NodeId> nodes_in_scope(bool selected = false) const;
+  /// The nodes with selected triangles in scope() if any node is picked, for edits whose empty list means all.
+  std::vector<NodeRef> selected_nodes_if_picked() const;
+  /// Whether commands work on a node: with an object, visible, not locked, and in a picked node if any is picked.
+  /// `in`: its scene, this one or a preview of it.
+  bool in_scope(const Scene& in, const PlacedNode& placed) const;
   /// "in kettle", "in 3 picked", "in all".
   std::string scope_words() const;
 
@@ -87,6 +97,9 @@ struct DocumentEditor {
   /// Targets of deformation tools, one edit per target: the selected triangles in scope(), else the first visible,
   /// unlocked node with an object that is picked (any such node if nothing is picked). Empty if there is none.
   std::vector<DeformTarget> deform_targets() const;
+  /// The target of a tool that makes one edit: that of deform_targets(), or all selected triangles of the scene if
+  /// those are the targets. Nothing, and a message, if there is no target or several that one edit cannot name.
+  std::optional<DeformTarget> one_deform_target();
   /// Nodes whose triangles deform_targets() would move.
   std::set<NodeId> deform_nodes() const;
   /// World box of the targets' triangles.
@@ -126,10 +139,11 @@ struct DocumentEditor {
   /// Title of the step that undo (steps < 0) or redo reaches, or "N steps" for several.
   std::string title_of_steps(int steps) const;
   std::optional<PreviewRequest> asked_;  ///< the last requested preview
-  /// Picked, visible and not locked.
-  bool in_scope(const PlacedNode& placed) const;
+  bool in_scope(const PlacedNode& placed) const { return in_scope(scene(), placed); }
   /// Whether it is in a picked node, or nothing is picked.
-  bool is_picked(const PlacedNode& placed) const;
+  bool is_picked(const Scene& in, const PlacedNode& placed) const;
+  /// Says that nothing in the scope can be edited, or that nothing is selected there.
+  void say_why_nothing(bool needs_selection);
   std::map<NodeId, std::size_t> selected_;  ///< number of selected triangles per node, without zeros
   bool at_rest_ = false;
   std::vector<std::function<void()>> finished_;  ///< callbacks of ended jobs

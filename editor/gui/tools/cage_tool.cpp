@@ -60,15 +60,11 @@ CageTool::CageTool() = default;
 CageTool::~CageTool() = default;
 
 void CageTool::make(ToolContext& editor) {
-  const std::vector<DeformTarget> targets = editor.deform_targets();
-  if (targets.empty()) {
-    editor.messages.fail("The scene has no visible object for a cage. Open a scene first.");
-    return;
-  }
+  const std::optional<DeformTarget> target = editor.one_deform_target();
+  if (!target) return;
   CageDeform edit = edit_;
-  edit.target = targets.front();
+  edit.target = *target;
   edit.target.falloff = edit_.target.falloff;
-  if (targets.size() > 1) edit.target.node.reset();  // one cage around all selected triangles
   edit.cage = {};
   if (wraps_)
     edit.cage.wrap = static_cast<double>(coarseness_);

@@ -77,12 +77,9 @@ std::vector<Vec2> Gizmo::plane_handle(const Target& target, const ViewportProjec
 std::optional<Gizmo::Target> Gizmo::target(const ToolContext& editor, const ViewportProjection& lens) const {
   Target target;
   Box box;
-  std::set<NodeId> picked;
-  for (const std::optional<NodeRef>& node : editor.scope())
-    if (node) picked.insert(node->id);
+  const std::set<NodeId> selected = editor.nodes_in_scope(true);
   for (const PlacedNode& placed : placed_nodes(editor.scene())) {
-    if (!placed.visible || placed.locked || !placed.node->selection || count(*placed.node->selection) == 0) continue;
-    if (!picked.empty() && !picked.contains(placed.node->id)) continue;
+    if (!selected.contains(placed.node->id)) continue;
     target.nodes.push_back(placed.node->id);
     box.extend(selection_bounds(placed));
   }
@@ -90,7 +87,7 @@ std::optional<Gizmo::Target> Gizmo::target(const ToolContext& editor, const View
   if (!target.triangles) {
     for (const NodeId id : editor.active_tops()) {
       const auto placed = find_placed(editor.scene(), id);
-      if (!placed || placed->locked) continue;
+      if (!placed || placed->locked || !placed->visible) continue;
       target.nodes.push_back(id);
       box.extend(subtree_bounds(editor.scene(), id));
     }

@@ -81,6 +81,7 @@ void GroundTool::options(ToolContext& editor) {
   ImGui::BeginDisabled(editor.selected_triangles() == 0);
   if (ui::button("From selection")) {
     edit.selection = true;
+    edit.nodes = editor.selected_nodes_if_picked();
     editor.edit(edit);
   }
   ImGui::EndDisabled();

@@ -60,9 +60,9 @@ std::optional<HandlesDeform> HandlesTool::edit_for(const Pins& pins) const {
 
 void HandlesTool::begin(ToolContext& editor) {
   end();
-  const std::vector<DeformTarget> targets = editor.deform_targets();
-  if (targets.empty()) return;
-  target_ = targets.front();
+  const std::optional<DeformTarget> target = editor.one_deform_target();
+  if (!target) return;
+  target_ = *target;
   from_ = editor.scene();
   reach_ = reach_of_coarseness * static_cast<double>(coarseness_) * editor.deform_bounds({target_}).diagonal().norm();
   steps_ = {{}};

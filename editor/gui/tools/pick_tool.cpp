@@ -14,11 +14,10 @@ namespace {
 void take(ToolContext& editor, const std::optional<PickHit>& picked, const Pointer& pointer, bool floods) {
   if (floods) {
     if (!picked) return;
-    std::set<NodeId> touched;
-    for (const std::optional<NodeRef>& node : editor.scope())
-      if (node) touched.insert(node->id);
-    if (!touched.empty() && !touched.contains(picked->node)) {
-      editor.messages.say("This node is not picked. Tools work only on picked nodes.");
+    if (!editor.nodes_in_scope().contains(picked->node)) {
+      const auto placed = find_placed(editor.scene(), picked->node);
+      editor.messages.say(placed && placed->locked ? "This node is locked."
+                                                   : "This node is not picked. Tools work only on picked nodes.");
       return;
     }
     SelectLike like;

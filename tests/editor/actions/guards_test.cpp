@@ -259,6 +259,57 @@ TEST_F(Guards, PicturesThatMaterialsNameAreProtectedEvenIfNotRead) {
   }
 }
 
+// Names that the system does not resolve, though their resolved form is a file.
+TEST_F(Guards, AnotherSpellingOfAnOutputIsNotAnotherFile) {
+  const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";
+  fs::copy(kettle, path("kettle"));
+  fs::create_directories(path("cap/images"));
+  write("cap/transforms.json", R"({"camera_angle_x": 0.7, "w": 16, "h": 16, "frames": [{"file_path": "images/0.png",
+            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
+  write("cap/images/0.png", "\x89PNG of somebody");
+  write("notes.txt", "mine");
+  write("user.glb", "mine");
+  write("user.html", "mine");
+  write("s.jsonl",
+        import_line() + fmt::format("{{\"op\": \"save_project\", \"out\": \"{}\"}}\n", path("p.rebake").string()));
+  ASSERT_EQ(program("run {}/s.jsonl"), 0) << log();
+  write("failing.jsonl", import_line() + R"({"op": "remove", "node": "none"})");
+  EXPECT_EQ(program("run {}/failing.jsonl --journal {}/left.journal"), 1);
+  const auto before = folder_bytes(path(""));
+  const auto unchanged = [&](const std::string& what) {
+    const auto after = folder_bytes(path(""));
+    for (const auto& [name, bytes] : before) {
+      if (name.find("log") != std::string::npos) continue;
+      EXPECT_TRUE(after.contains(name) && after.at(name) == bytes) << what << ": " << name;
+    }
+  };
+  const auto spelled = [](const std::string& file, int how) {
+    const std::size_t slash = file.rfind('/');
+    const std::string in = slash == std::string::npos ? "" : file.substr(0, slash + 1), name = file.substr(in.size());
+    return how == 0   ? file + "/"
+           : how == 1 ? file + "/."
+           : how == 2 ? in + "missing/../" + name
+                      : in + "notes.txt/../" + name;
+  };
+  for (int how = 0; how < 4; ++how) {
+    for (const char* file :
+         {"p.rebake", "left.journal", "notes.txt", "kettle/mlp.json", "cap/transforms.json", "cap/images/0.png"}) {
+      const std::string command = "render " + kettle + " --size 8x8 -o {}/" + spelled(file, how);
+      EXPECT_EQ(program(command), 1) << command;
+      unchanged(command);
+    }
+    for (const std::string& command : {"recover {}/left.journal --keep -o {}/" + spelled("p.rebake", how),
+                                       "export " + kettle + " --format gltf -o {}/" + spelled("user.glb", how),
+                                       "publish " + kettle + " --single-file -o {}/" + spelled("user.html", how),
+                                       "run {}/s.jsonl --list-files {}/" + spelled("notes.txt", how),
+                                       "render " + kettle + " --path turntable -o {}/" +
+                                           (how < 2 ? std::string("cap/images") : spelled("cap/images", how))}) {
+      EXPECT_NE(program(command), 0) << command;
+      unchanged(command);
+    }
+  }
+}
+
 TEST_F(Guards, ProjectsOfLinkedFilesOpen) {
   fs::create_directories(path("blobs"));
   write("blobs/abc123", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");

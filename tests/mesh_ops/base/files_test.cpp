@@ -4,8 +4,10 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+
 #include <sys/mount.h>
 #include <sys/stat.h>
+#include <random>
 
 #include <cerrno>
 #include <fstream>
@@ -281,6 +283,38 @@ TEST(SourceGuard, ProtectsFilesThatASourceLinksTo) {
 }
 
 // Simulates two paths to one file without a link: a bind mount, or a case-insensitive file system.
+TEST(WriteFileAtomically, RefusesNamesThatChecksOfTheFileWouldNotFind) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "file";
+  fs::create_directory(folder.path() / "sub");
+  fs::create_symlink("nowhere", folder.path() / "dangling");
+  write_file_atomically(file, "old", {});
+  std::mt19937 random(3);
+  const char* const parts[] = {"sub", "missing", "file", "dangling", "..", "."};
+  int written = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    fs::path path = folder.path();
+    for (unsigned k = random() % 4; k > 0; --k) path /= parts[random() % std::size(parts)];
+    path /= "file";
+    if (random() % 3 == 0) path = path.string() + (random() % 2 == 0 ? "/" : "/.");
+    // Paths may lead out of the folder.
+    if (!fs::weakly_canonical(path).string().starts_with(folder.path().string())) continue;
+    std::error_code error;
+    const bool found = fs::exists(path, error);
+    bool wrote = true;
+    try {
+      write_file_atomically(path, "new", {});
+    } catch (const FileError&) {
+      wrote = false;
+    }
+    EXPECT_EQ(wrote && !found && read_file(file) == "new", false) << path << ": a check would not have found the file";
+    written += wrote ? 1 : 0;
+    fs::remove_all(folder.path() / "sub/file");
+    write_file_atomically(file, "old", {});
+  }
+  EXPECT_GT(written, 50);
+}
+
 class OneFileTwoNames : public FileCalls {
  public:
   OneFileTwoNames(fs::path name, fs::path other) : name_(std::move(name)), other_(std::move(other)) {}
