@@ -188,16 +188,16 @@ class Document:
         gain: first bring each picture to the exposure and white balance of its photograph
         min_psnr: required mean PSNR in dB; exit code 4 below it
         """
-    def train_light(self, node: Node | None = None, edits: Sequence[dict[str, Any]] | None = None, poses: int = 200, rays: int = 128, way: str = "linear", channels: int = 8, coarseness: float = 0.03, out: str | PathLike[str] = "") -> list[str]:
+    def train_light(self, node: Node | None = None, edits: Sequence[dict[str, Any]] | None = None, poses: int = 200, rays: int = 128, way: Literal["linear", "net", "published"] = "linear", channels: int = 8, coarseness: float = 0.03, out: str | PathLike[str] = "") -> list[str]:
         """Trains a model of an object's light transfer, for shading while it is dragged; returns its facts.
 
         node: the object; default: the only one
         edits: edits that move the object; poses scale their strength by -1 to 1; default: its deformations in the history
         poses: number of poses, 8 to 2000
         rays: rays per site, 16 to 16384
-        way: linear in the pose, or net: a U-Net on a geometry image (needs LibTorch)
-        channels: net: channels of the first layer, a multiple of 8 up to 64
-        coarseness: net: coarseness of the proxy body relative to the object's diagonal
+        way: linear in the pose; net: a U-Net on a geometry image; published: that of deep precomputed radiance transfer (both need LibTorch)
+        channels: networks: channels of the first layer, a multiple of 8 up to 64
+        coarseness: networks: coarseness of the proxy body relative to the object's diagonal
         out: also write the model to this file
         """
     def use_light_model(self, model: str | PathLike[str]) -> list[str]:
@@ -334,12 +334,13 @@ class Document:
 
         color: red, green and blue as displayed (share)
         """
-    def ground(self, *, height: float | None = None, foot: bool = False, selection: bool = False, points: Sequence[Sequence[float]] = []) -> None:
+    def ground(self, *, height: float | None = None, foot: bool = False, selection: bool = False, nodes: Sequence[Node] | None = None, points: Sequence[Sequence[float]] = []) -> None:
         """Sets the ground plane for drop, snapping and the grid; its normal is the up direction of sky light. By default, the ground is y = 0.
 
         height: level plane at this y (scene units)
         foot: level plane at the lowest point of all visible objects
         selection: least-squares plane of the selected triangles
+        nodes: with selection: only triangles of these nodes; default: of all visible, unlocked nodes
         points: plane through three points
         """
     def light(self, *, effects: Sequence[str] = ["auto"], source: str = "", zenith: Vector = [0.75,0.88,1.1], ground: Vector = [0.34,0.3,0.27], sun: Vector = [0.5,0.8,0.45], sun_color: Vector = [1.15,1.05,0.9], sun_degrees: float = 5.0, picture: str = "", picture_degrees: float = 0.0, content: str = "", bounce: Vector = [0.0,0.0,0.0], budget: float = 1.0, rays: int = 256) -> None:
@@ -485,7 +486,7 @@ class Document:
         duplicates: same vertices and texels as a triangle drawn later
         unseen: not visible from this many eyes on a sphere around the object; other objects do not occlude; points in at least 16 opaque texels per triangle are tested
         distance: distance of the eyes, in half diagonals of the object's box
-        unseen_from: names of stored views: not visible from any of their eyes
+        unseen_from: names of stored views: not visible from any of their eyes; triangles nearer behind others than 1e-5 of the object's diagonal count as visible
         mode: how to combine the result with the present selection
         """
     def select_masks(self, *, path: str, format: Literal["auto", "transforms", "colmap", "poses_bounds", "nerfstudio_path", "ngp_path"] = "auto", masks: str = "", world: Literal["y_up", "z_up"] | None = None, scale: float = 1.0, node: Node | None = None, labels: Sequence[int] | None = None, threshold: float = 0.5, store: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", content: str = "", masks_content: str = "") -> dict[str, NDArray[np.bool_]]:

@@ -44,7 +44,7 @@ std::string scalar_layers(const Decoder& decoder, RenderOptions::Precision preci
       sum += layer == 0 && !halves ? fmt::format(" + {:.9e} * {}", w, inputs[i])
                                    : fmt::format(" + {:.9e}{} * {}{}", w, suffix, "xab"[layer], i);
     }
-    out += layer < 2 ? fmt::format("max({}, 0.0{});\n", sum, suffix) : sum + ";\n";
+    out += layer == 2 ? sum + ";\n" : halves ? fmt::format("ramp({});\n", sum) : fmt::format("max({}, 0.0);\n", sum);
   });
   return out;
 }
@@ -96,7 +96,10 @@ std::string vector_layers(const Decoder& d, RenderOptions::Precision precision) 
 
 std::string decoder_constants_glsl(const std::vector<std::shared_ptr<const Decoder>>& decoders,
                                    RenderOptions::Precision precision, RenderOptions::Arithmetic arithmetic) {
-  std::string out = arithmetic == Arithmetic::halves ? fmt::format("#extension {} : require\n", half_extension) : "";
+  std::string out;
+  if (arithmetic == Arithmetic::halves)
+    out = fmt::format("#extension {} : require\nfloat16_t ramp(float16_t x) {{ return x > 0.0hf ? x : 0.0hf; }}\n",
+                      half_extension);
   for (std::size_t k = 0; k < decoders.size(); ++k) {
     const ColorRule rule = decoders[k]->rule;
     out += fmt::format("vec3 decode_{}(vec4 low, vec4 high, vec3 ray) {{\n", k);

@@ -1,5 +1,6 @@
 """Files: opening, saving, exporting, recovering, and file dialogs."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -168,6 +169,41 @@ class FileTest(WindowCase):
         until(lambda: (out / "mlp.json").is_file(), "the export", 180)
         editor.settle()
         self.assertFalse((out / "scene.json").exists())
+
+    def test_pictures_do_not_replace_photographs_nor_saves_the_work_of_others(self):
+        editor = self.open(FICUS)
+        editor.until_ops("import")
+        images = self.folder / "cap/images"
+        linked = self.folder / "linked"
+        images.mkdir(parents=True)
+        linked.mkdir()
+        for k in range(3):
+            (images / f"{k:03}.png").write_bytes(b"\x89PNG of somebody")
+            (linked / f"{k:03}.png").symlink_to(images / f"{k:03}.png")
+        (self.folder / "cap/transforms.json").write_text(json.dumps({
+            "camera_angle_x": 0.7, "w": 16, "h": 16, "frames": [
+                {"file_path": f"images/{k:03}.png", "transform_matrix": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1]]}
+                for k in range(3)]}))
+        for question, path in (("turntable", images), ("turntable", linked), ("screenshot", images / "000.png")):
+            editor.command(question)
+            editor.answer(str(path))
+            editor.key("Return")  # also confirms replacing it
+            editor.settle()
+            for k in range(3):
+                self.assertEqual((images / f"{k:03}.png").read_bytes(), b"\x89PNG of somebody", question)
+            editor.key("Escape", "Escape", "Escape")
+        project = self.folder / "p.rebake"
+        editor.key("ctrl+shift+s")
+        editor.answer(str(project))
+        until(project.is_file, "the project")
+        editor.settle()
+        changed = project.read_text().replace('"edits"', '"edits" ', 1)
+        project.write_text(changed)
+        editor.key("ctrl+shift+s")
+        editor.answer(str(self.folder / "cap" / ".." / "p.rebake"))
+        editor.key("Return")
+        editor.settle()
+        self.assertEqual(project.read_text(), changed)
 
     def test_folders_of_other_tools_have_import_options(self):
         editor = self.open()

@@ -205,14 +205,16 @@ class SelectTest(WindowCase):
             editor.key("v")
 
     def three_kettles(self):
-        """Three kettles, of which some triangles are selected in each; nothing is picked."""
+        """Three kettles, of which all triangles are selected; nothing is picked."""
         editor = self.open(KETTLE, KETTLE, KETTLE)
         editor.until_ops("import", "import", "import")
-        editor.key("Escape", "Escape", "r")
-        editor.drag([editor.in_viewport(0.2, 0.2), editor.in_viewport(0.8, 0.5)])
-        self.assertGreater(editor.state()["selected"], 0)
+        editor.key("Escape", "Escape", "ctrl+a")
         names = sorted(item.split("/")[1] for item in editor.state()["items"]
                        if item.startswith("outline/") and item.endswith("/name"))
+        for name in names:
+            editor.click(f"outline/{name}/name")
+            self.assertGreater(editor.state()["selected"], 0, name)
+        editor.key("Escape", "Escape")
         return editor, names
 
     def test_a_locked_picked_node_does_not_stand_for_the_scene(self):
@@ -243,7 +245,10 @@ class SelectTest(WindowCase):
         self.assertEqual(editor.state()["steps"], steps)
 
     def test_separate_without_a_picked_node_takes_all_that_is_selected(self):
-        editor, _ = self.three_kettles()
+        editor = self.open(KETTLE, KETTLE, KETTLE)
+        editor.until_ops("import", "import", "import")
+        editor.key("Escape", "Escape", "r")
+        editor.drag([editor.in_viewport(0.2, 0.2), editor.in_viewport(0.8, 0.5)])
         editor.key("ctrl+j")
         self.assertEqual(editor.ops()[-1], "separate")
         self.assertEqual(editor.state()["steps"], 5)

@@ -57,8 +57,10 @@ REBAKE_DESCRIBE_EDIT(
             "not visible from this many eyes on a sphere around the object; other objects do not occlude; points in at "
             "least 16 opaque texels per triangle are tested");
       visit("distance", edit.distance, Need::optional, "distance of the eyes, in half diagonals of the object's box");
-      visit("unseen_from", edit.unseen_from, Need::optional,
-            "names of stored views: not visible from any of their eyes");
+      visit(
+          "unseen_from", edit.unseen_from, Need::optional,
+          "names of stored views: not visible from any of their eyes; triangles nearer behind others than 1e-5 of the "
+          "object's diagonal count as visible");
       visit("mode", edit.mode, Need::optional, "how to combine the result with the present selection");
     })
 
