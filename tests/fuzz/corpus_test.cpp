@@ -20,6 +20,7 @@ TEST(FuzzCorpus, EveryInputIsReadOrRejected) {
     EXPECT_NO_THROW(fuzz::read_camera_bytes(bytes)) << entry.path();
     EXPECT_NO_THROW(fuzz::read_mesh_bytes(bytes)) << entry.path();
     EXPECT_NO_THROW(fuzz::read_script_bytes(bytes)) << entry.path();
+    EXPECT_NO_THROW(fuzz::read_volume_bytes(bytes)) << entry.path();
     ++inputs;
   }
   EXPECT_GE(inputs, 3U);

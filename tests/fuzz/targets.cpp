@@ -8,6 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/script/script.h"
+#include "editor/studies/representations/npz.h"
+#include "editor/studies/representations/plenoctree_files.h"
+#include "editor/studies/representations/snerg_files.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
@@ -155,6 +158,20 @@ void read_mesh_bytes(std::string_view bytes) {
   try {
     const Nerf2MeshMlp mlp = read_nerf2mesh_mlp(bytes, "mlp.json");
     if (!(read_nerf2mesh_mlp(write_nerf2mesh_mlp(mlp), "back.json").decoder == mlp.decoder)) std::abort();
+  } catch (const Error&) {
+  }
+}
+
+void read_volume_bytes(std::string_view bytes) {
+  static const Workplace place;
+  try {
+    read_npz(place.with("a.npz", bytes));
+    read_plenoctree(place.with("a.npz", bytes));
+  } catch (const Error&) {
+  }
+  try {
+    place.with("scene_params.json", bytes);
+    read_snerg(place.with("scene_params.json", bytes).parent_path());
   } catch (const Error&) {
   }
 }

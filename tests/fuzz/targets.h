@@ -11,4 +11,6 @@ void read_camera_bytes(std::string_view bytes);  ///< every format of camera fil
 void read_mesh_bytes(std::string_view bytes);    ///< glTF, PLY, OBJ with materials, mlp.json of nerf2mesh
 void read_script_bytes(std::string_view bytes);  ///< scripts without access to files
 
+void read_volume_bytes(std::string_view bytes);  ///< .npz of a PlenOctree, scene_params.json of a SNeRG scene
+
 }  // namespace rebake::fuzz
