@@ -41,13 +41,12 @@ std::string without_scale(const fs::path& folder) {
   return last != std::string::npos && last + 1 < name.size() && name[last] == '_' ? name.substr(0, last) : name;
 }
 
-// A picture is taken for a photograph or mask if the cameras name it, or another one in its folder. One that Rebake
-// rendered, as into a folder of photographs, must be named by the cameras.
+// A picture is taken for a photograph or mask if the cameras name it, or another one in its folder.
 void refuse_replacing_photographs(const fs::path& path, const fs::path& folder) {
   std::error_code error;
-  const bool is_rendered = is_rendered_picture(path), is_picture = !is_rendered && is_picture_file(path);
+  const bool is_picture = is_picture_file(path);
   const std::string place = without_scale(fs::weakly_canonical(folder, error));
-  for (const fs::path& file : captured_files_at(folder, is_rendered ? named_photographs : capture_files))
+  for (const fs::path& file : captured_files_at(folder))
     if (fs::equivalent(file, path, error) ||
         (is_picture && without_scale(fs::weakly_canonical(file.parent_path(), error)) == place))
       throw FileError(path, "belongs to a capture: photographs or masks are in its folder; name another folder");
@@ -77,7 +76,8 @@ void refuse_replacing_work(const fs::path& path) {
     for (const fs::path& file : format->files(folder))
       if (fs::equivalent(folder / file, path, error))
         throw FileError(path, "is a file of the scene in its folder; name another file");
-  refuse_replacing_photographs(path, folder);
+  // Rendered ones may be rendered again: a script may export cameras for its own pictures.
+  if (!is_rendered_picture(path)) refuse_replacing_photographs(path, folder);
 }
 
 void refuse_replacing_foreign(const fs::path& path) {

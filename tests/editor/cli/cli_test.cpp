@@ -149,7 +149,7 @@ TEST_F(Cli, StudiesReplaceOnlyTheirOwnFiles) {
   write_text(in("out/samples.png"), "a picture");
   const Outcome refused = rebake_run(study);
   EXPECT_EQ(refused.code, 1) << refused.text;
-  EXPECT_NE(refused.text.find("is not a plot of an earlier study"), std::string::npos) << refused.text;
+  EXPECT_NE(refused.text.find("was not written by an earlier study"), std::string::npos) << refused.text;
   EXPECT_EQ(read_file(in("out/samples.png")), "a picture");
   std::filesystem::remove(in("out/samples.png"));
   for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(study).code, 0);

@@ -103,8 +103,8 @@ TEST(TracedFrames, GoOnFromTheirCache) {
   std::filesystem::resize_file(cache, std::filesystem::file_size(cache) - 100);
   EXPECT_EQ(traced_frames(object, side, rays, start, {}).transfer, at_once.transfer);
   EXPECT_EQ(traced_frames(object, side, rays, start, {}).transfer, at_once.transfer) << "from the cache alone";
-  // Held-out frames have four times as many rays.
-  EXPECT_EQ(at_once.transfer[5], traced_planes(at_once.rest, at_once.frames[5], 4 * rays));
+  // Held-out frames have more rays.
+  EXPECT_EQ(at_once.transfer[5], traced_planes(at_once.rest, at_once.frames[5], truth_rays_per_ray * rays));
   EXPECT_EQ(at_once.transfer[6], traced_planes(at_once.rest, at_once.frames[6], rays));
   // Traces of another layout of the same vertices are not taken.
   AnimatedObject other = object;
