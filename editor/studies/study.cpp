@@ -235,9 +235,12 @@ void prepare_study_folder(const Study& study, const std::filesystem::path& folde
     if (std::filesystem::is_symlink(base + ending, error))
       throw FileError(base + ending, "is a symbolic link; remove it, since the study would overwrite its target");
   }
-  if (std::filesystem::exists(base + ".csv", error) && !read_file(base + ".csv").starts_with("choice,"))
+  const bool has_table = std::filesystem::exists(base + ".csv", error);
+  if (has_table && !read_file(base + ".csv").starts_with("choice,"))
     throw FileError(base + ".csv", "is not a table of an earlier study; choose another folder");
   const nlohmann::json known = written_plots(base);
+  // Earlier versions wrote no record.
+  if (has_table && !std::filesystem::exists(base + ".json", error)) return;
   for (const char* ending : endings_of_plots)
     if (const std::filesystem::path plot = base + ending; std::filesystem::exists(plot, error)) {
       const auto hash = known.find(plot.filename().string());
@@ -261,14 +264,19 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
   }
   const std::string base = (folder / study.name).string();
   write_file_atomically(base + ".csv", csv, guard);
+  const auto record = [&] {
+    nlohmann::json plots = nlohmann::json::object();
+    std::error_code error;
+    for (const char* ending : endings_of_plots)
+      if (const std::filesystem::path plot = base + ending; std::filesystem::exists(plot, error))
+        plots[plot.filename().string()] = hash_at(plot);
+    write_file_atomically(base + ".json", nlohmann::json{{"software", "Rebake"}, {"plots", plots}}.dump(), guard);
+  };
+  // A run that ends between a plot and its record must not leave plots that the next run refuses.
+  std::filesystem::remove(base + ".json");
   write_plot(study, table, table.x, base, guard);
   if (table.second_x) write_plot(study, table, *table.second_x, base + "-2", guard);
-  nlohmann::json plots = nlohmann::json::object();
-  std::error_code error;
-  for (const char* ending : endings_of_plots)
-    if (const std::filesystem::path plot = base + ending; std::filesystem::exists(plot, error))
-      plots[plot.filename().string()] = hash_at(plot);
-  write_file_atomically(base + ".json", nlohmann::json{{"software", "Rebake"}, {"plots", plots}}.dump(), guard);
+  record();
 }
 
 }  // namespace rebake

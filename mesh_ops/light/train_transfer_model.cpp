@@ -132,9 +132,7 @@ TransferModel trained_model(const DragLight& start,
     const Eigen::VectorXf truth = training.local.row(one.pose).transpose();
     off += static_cast<double>((model.predict({}, one.sites, one.turns) - truth).squaredNorm());
   }
-  model.learned.mean.resize(0);
-  model.learned.components.resize(0, 0);
-  model.learned.linear.resize(0, model.learned.space.dimensions() + 1);
+  model.learned.drop_weights();
   model.net_error = relative(off, all);
   return model;
 }

@@ -39,7 +39,7 @@ bool reversed_depth() {
   return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
 }
 
-bool computes_halves() { return epoxy_has_gl_extension(half_extension); }
+bool computes_halves() { return epoxy_gl_version() >= 40 && epoxy_has_gl_extension(half_extension); }
 
 Eigen::Matrix4d projection(const View& view) {
   const double f = 1 / half_height(view.camera, 1);

@@ -10,6 +10,7 @@
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/texture/decoder.h"
 #include "render/compare.h"
+#include "render/passes/decoder_glsl.h"
 #include "render/thumbnail.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/nerf2mesh_example.h"
@@ -186,6 +187,12 @@ TEST(Picture, SixteenBitFloatsComeNearOrAreRefusedByName) {
   options.weights = RenderOptions::Weights::constants;
   const Image reference = renderer().render(scene, view, options);
   options.arithmetic = RenderOptions::Arithmetic::halves;
+  // Whatever the driver: the text asks for the extension first, and has literals of 16 bits only.
+  const std::string text = decoder_constants_glsl({placed_nodes(scene).front().node->object->decoder},
+                                                  options.precision, options.arithmetic);
+  EXPECT_TRUE(text.starts_with("#extension GL_AMD_gpu_shader_half_float : require\n"));
+  for (std::size_t at = text.find("e-0"); at != std::string::npos; at = text.find("e-0", at + 1))
+    EXPECT_EQ(text.substr(at + 4, 2), "hf") << text.substr(at, 12);
   try {
     EXPECT_GT(compare(renderer().render(scene, view, options), reference, 0).psnr_db, 40);
   } catch (const DeviceError& error) {

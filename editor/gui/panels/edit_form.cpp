@@ -130,7 +130,9 @@ void EditForm::draw_count(const DocumentEditor& editor) const {
   std::string text = "Counting...";
   const json values = inputs_.values();
   const auto node = values.find("node");
-  const NodeId only = node != values.end() ? Codec<NodeRef>::read(*node, editor.scene()).id : NodeId::none;
+  const NodeId only =
+      node != values.end() && node->is_number_unsigned() ? NodeId(node->get<std::uint64_t>()) : NodeId::none;
+  if (only != NodeId::none && !find(editor.scene(), only)) return;
   if (there)
     text =
         fmt::format("Would select {} (currently {})", triangles_text(selected_in(editor, editor.preview->scene, only)),

@@ -37,9 +37,10 @@ namespace {
 
 // Whether two paths lead to the same file, also if it does not exist.
 bool is_same_file(const fs::path& a, const fs::path& b) {
-  std::error_code error;
-  return !a.empty() && !b.empty() &&
-         (fs::weakly_canonical(a, error) == fs::weakly_canonical(b, error) || fs::equivalent(a, b, error));
+  std::error_code error, other_error;
+  if (a.empty() || b.empty()) return false;
+  const fs::path first = fs::weakly_canonical(a, error), second = fs::weakly_canonical(b, other_error);
+  return error || other_error ? a == b : first == second || fs::equivalent(a, b, error);
 }
 
 // The fields of an import that describe the folder.

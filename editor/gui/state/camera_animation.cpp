@@ -16,19 +16,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Throws FileError unless a folder is new, empty, or holds pictures of an earlier animation only.
-void refuse_other_content(const fs::path& folder) {
+std::string name_of(std::size_t picture) { return fmt::format("{:03}.png", picture); }
+
+// Throws FileError if one of the pictures would replace anything but a picture of an earlier animation.
+void refuse_other_pictures(const fs::path& folder, std::size_t count) {
   std::error_code error;
-  if (!fs::exists(folder, error)) return;
-  if (!fs::is_directory(folder, error)) throw FileError(folder, "is a file; name a folder, or a .mp4 file");
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().stem().string();
-    if (entry.is_symlink() || !entry.is_regular_file() || entry.path().extension() != ".png" ||
-        name.find_first_not_of("0123456789") != std::string::npos || !is_rendered_picture(entry.path()))
-      throw FileError(folder, fmt::format("contains \"{}\", which is not a picture of an animation; choose a new or "
-                                          "empty folder",
-                                          entry.path().filename().string()));
-    refuse_replacing_work(entry.path());
+  if (fs::exists(folder, error) && !fs::is_directory(folder, error))
+    throw FileError(folder, "is a file; name a folder, or a .mp4 file");
+  for (std::size_t k = 0; k < count; ++k) {
+    const fs::path picture = folder / name_of(k);
+    if (!fs::exists(fs::symlink_status(picture, error))) continue;
+    if (fs::is_symlink(picture, error) || !is_rendered_picture(picture))
+      throw FileError(picture, "exists and was not rendered by Rebake, or is a link; choose a new folder");
+    refuse_replacing_work(picture);
   }
 }
 
@@ -39,7 +39,7 @@ CameraAnimation::CameraAnimation(fs::path out, int width, int height, std::vecto
     : out_(std::move(out)), width_(width), height_(height), cameras_(std::move(cameras)) {
   if (out_.extension() != ".mp4") {
     sources.check_folder(out_);
-    refuse_other_content(out_);
+    refuse_other_pictures(out_, cameras_.size());
     pictures_ = out_;
   } else {
     sources.check_file(out_);
@@ -71,7 +71,7 @@ std::string CameraAnimation::run_step(const std::function<void(const Camera&, co
                                       const SourceGuard& sources) {
   const fs::path partial = pictures_ / "video.mp4";
   if (next_ < cameras_.size()) {
-    write(cameras_[next_], pictures_ / fmt::format("{:03}.png", next_));
+    write(cameras_[next_], pictures_ / name_of(next_));
     if (++next_ < cameras_.size()) return "";
     if (!video()) return fmt::format("Wrote {} pictures to {}", cameras_.size(), out_.string());
     encoder_ = std::make_unique<ChildProcess>(

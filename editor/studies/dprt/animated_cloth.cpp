@@ -4,6 +4,7 @@
 
 #include "editor/studies/dprt/animated_object.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/simulation/cloth.h"
 
 namespace rebake {
@@ -39,8 +40,9 @@ AnimatedObject animated_cloth(int frames, const Progress& progress) {
       object.rest.faces.push_back({a, b, b + 1});
       object.rest.faces.push_back({a, b + 1, a + 1});
     }
-  constexpr double rate = 30;   // frames per second
-  constexpr int settling = 60;  // frames before the first one
+  if (frames == 0) return object;  // the shape at rest takes no time
+  constexpr double rate = 30;      // frames per second
+  constexpr int settling = 60;     // frames before the first one
   for (int frame = -settling; frame < frames; ++frame) {
     progress.at("simulating the cloth", static_cast<double>(frame + settling) / (frames + settling));
     const double time = (frame + settling) / rate, ease = std::min(1.0, time / 2);
@@ -57,16 +59,21 @@ AnimatedObject animated_cloth(int frames, const Progress& progress) {
   return object;
 }
 
-AnimatedObject kept_cloth(int frames, const std::filesystem::path& file, const Progress& progress) {
-  // The rest shape takes no time.
+AnimatedObject cached_cloth(int frames, const std::filesystem::path& file, const Progress& progress) {
   AnimatedObject object = animated_cloth(0);
   const std::size_t points = object.rest.vertices.size(), values = 3 * points * static_cast<std::size_t>(frames);
   std::array<std::uint64_t, 3> head{cloth_version, points, static_cast<std::uint64_t>(frames)};
   std::error_code error;
+  // Links to other files are removed, so that those are not written to.
+  if (std::filesystem::is_symlink(file, error)) std::filesystem::remove(file);
+  const std::size_t size = sizeof head + values * sizeof(double);
   if (std::filesystem::is_regular_file(file, error) &&
-      std::filesystem::file_size(file, error) == sizeof head + values * sizeof(double)) {
+      std::filesystem::file_size(file, error) == size + sizeof(std::uint64_t)) {
     const std::string bytes = read_file(file);
-    if (std::memcmp(bytes.data(), head.data(), sizeof head) == 0) {
+    std::uint64_t hash = 0;
+    std::memcpy(&hash, bytes.data() + size, sizeof hash);
+    if (std::memcmp(bytes.data(), head.data(), sizeof head) == 0 &&
+        content_hash(std::string_view(bytes).substr(0, size)) == hash) {
       object.frames.assign(static_cast<std::size_t>(frames), std::vector<Vec3>(points));
       const char* at = bytes.data() + sizeof head;
       for (std::vector<Vec3>& frame : object.frames)
@@ -81,6 +88,8 @@ AnimatedObject kept_cloth(int frames, const std::filesystem::path& file, const P
   std::string bytes(reinterpret_cast<const char*>(head.data()), sizeof head);
   for (const std::vector<Vec3>& frame : object.frames)
     for (const Vec3& place : frame) bytes.append(reinterpret_cast<const char*>(place.data()), 3 * sizeof(double));
+  const std::uint64_t hash = content_hash(bytes);
+  bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
   write_file_atomically(file, bytes, {});
   return object;
 }

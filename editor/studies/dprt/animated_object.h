@@ -27,8 +27,8 @@ AnimatedObject animated_fish(int frames = dprt_frames);
 /// A cloth (mesh_ops/simulation) that hangs at two moving corners, in the wind. It does not collide with
 /// itself.
 AnimatedObject animated_cloth(int frames = dprt_frames, const Progress& progress = {});
-/// The same, kept in a file: simulated only if the file does not hold it.
-AnimatedObject kept_cloth(int frames, const std::filesystem::path& file, const Progress& progress = {});
+/// The same, cached in a file: simulated only if the file does not hold it.
+AnimatedObject cached_cloth(int frames, const std::filesystem::path& file, const Progress& progress = {});
 /// Meshes of equal connectivity (OBJ, OFF, PLY), one per frame; `pattern`: a path whose file name may have the
 /// wildcards * and ?. Throws FileError if they differ in their triangles, and Error if no file fits.
 AnimatedObject animated_files(const std::string& pattern);

@@ -22,7 +22,7 @@ AnimatedObject object_named(const std::string& name, const StudyInput& input) {
   if (!input.dprt.meshes.empty()) return animated_files(input.dprt.meshes);
   if (name == "head") return animated_head();
   if (name == "fish") return animated_fish();
-  if (name == "cloth") return kept_cloth(dprt_frames, own_folder(input, "dprt") / "cloth.frames", input.progress);
+  if (name == "cloth") return cached_cloth(dprt_frames, own_folder(input, "dprt") / "cloth.frames", input.progress);
   throw FieldError("object", fmt::format("\"{}\" is not known (known: head, fish, cloth, space, all)", name));
 }
 
@@ -57,15 +57,21 @@ DprtOptions sizes_of(const DprtOptions& wanted, const std::string& object) {
 }
 
 // Frames, coefficients, and the images and targets of both networks' training sets, which exist one after the other.
-double gigabytes_of(const DprtOptions& options) {
+double gigabytes_of(const DprtOptions& options, std::size_t frames) {
   constexpr double of_texel = sizeof(Vec3) + sizeof(float) * (sh::count + unet_inputs + unet_outputs) +
                               sizeof(float) * sh::count;  // what the second training set keeps besides
-  return dprt_frames * of_texel * options.side * options.side / 1e9;
+  return static_cast<double>(frames) * of_texel * options.side * options.side / 1e9;
+}
+
+void say_sizes(const StudyInput& input, const std::string& name, const DprtOptions& sizes, std::size_t frames) {
+  input.say(fmt::format("{}: {}² texels, {} channels, {} epochs; about {:.1f} GB of memory", name, sizes.side,
+                        sizes.channels, sizes.epochs, gigabytes_of(sizes, frames)));
 }
 
 void study_object(const StudyInput& input, const std::string& name, StudyTable& table) {
   const DprtOptions options = sizes_of(input.dprt, name);
   const AnimatedObject object = object_named(name, input);
+  say_sizes(input, object.name, options, object.frames.size());
   const fs::path own = own_folder(input, "dprt");
   const TracedFrames traced = traced_frames(object, options.side, training_rays,
                                             own / (object.name + fmt::format("-{}", options.side)), input.progress);
@@ -109,13 +115,13 @@ StudyTable study_dprt(const StudyInput& input) {
   if (const int step = unet_side_step(UnetForm::added); options.side % step != 0)
     throw FieldError("--side", fmt::format("must be a multiple of {}", step));
   if (options.channels % 8 != 0) throw FieldError("--channels", "must be a multiple of 8");
-  const DprtOptions sizes = sizes_of(options, options.object);
   input.say(
-      fmt::format("sizes: {}² texels, {} channels, {} epochs (published: 256² and 512² texels, 32 channels, 500 to "
-                  "1000 epochs; --paper); about {:.1f} GB of memory; about 20 minutes per object with the default "
-                  "sizes on two cores",
-                  sizes.side, sizes.channels, sizes.epochs, gigabytes_of(sizes)));
+      "published: 256² texels (fish: 512²), 32 channels, 500 to 1000 epochs (--paper); about 20 minutes per object "
+      "with "
+      "the default sizes on two cores");
   if (options.object == "space") {
+    const DprtOptions sizes = sizes_of(options, "space");
+    say_sizes(input, "space", sizes, dprt_frames);
     study_shape_space(input, sizes, table);
     return table;
   }

@@ -156,7 +156,8 @@ Npz read_npz(const fs::path& file) {
   std::size_t at = number_at(bytes, end + 16, 4);
   if (at == zip64) throw FileError(file, "is a zip archive of more than 4 GB, which is not supported");
   Npz arrays;
-  std::uint64_t unpacked = 0, packed_so_far = 0;
+  std::uint64_t unpacked = 0;
+  std::map<std::size_t, std::size_t> taken;  // begin and end of the entries so far
   for (std::size_t k = 0; k < count; ++k) {
     if (at > end || end - at < central_size || number_at(bytes, at, 4) != central_mark)
       damaged("its table of contents");
@@ -172,8 +173,11 @@ Npz read_npz(const fs::path& file) {
     const std::size_t data = local + local_size + number_at(bytes, local + 26, 2) + number_at(bytes, local + 28, 2);
     if (data > end || end - data < packed) damaged(name);
     unpacked += size;
-    packed_so_far += packed;
-    if (packed_so_far > end) damaged(name + " overlaps others");
+    const auto after = taken.lower_bound(local);
+    if ((after != taken.end() && after->first < data + packed) ||
+        (after != taken.begin() && std::prev(after)->second > local))
+      damaged(name + " overlaps another array");
+    taken[local] = data + packed;
     // Deflate packs at most about 1032 to 1.
     if (unpacked > most_unpacked || size / 1040 > packed) damaged(fmt::format("{} has an impossible size", name));
     std::string contents(size, '\0');

@@ -67,6 +67,7 @@ std::vector<fs::path> named_pictures(const fs::path& folder, const fs::path& nam
   std::vector<fs::path> pictures;
   std::istringstream lines(read_file(folder / name));
   for (std::string line; std::getline(lines, line);) {
+    std::replace(line.begin(), line.end(), '\\', '/');  // of Windows
     line = trimmed(line);
     if (line.starts_with('#') || line.starts_with("newmtl")) continue;
     for (std::size_t at = line.find_first_of(" \t"); at != std::string::npos; at = line.find_first_of(" \t", at + 1)) {

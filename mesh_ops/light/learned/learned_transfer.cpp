@@ -184,6 +184,12 @@ Eigen::VectorXf LearnedTransfer::predict(const PoseSpace::Place& place) const {
 
 std::vector<Vec3> LearnedTransfer::probes_in(const std::vector<Vec3>& places) const { return picked(places, probes); }
 
+void LearnedTransfer::drop_weights() {
+  mean.resize(0);
+  components.resize(0, 0);
+  linear.resize(0, space.dimensions() + 1);
+}
+
 std::uint64_t LearnedTransfer::memory() const {
   return static_cast<std::uint64_t>(mean.size() + components.size()) * sizeof(float) +
          static_cast<std::uint64_t>(linear.size() + centers.size() + kernel.size() + space.axes.size()) *

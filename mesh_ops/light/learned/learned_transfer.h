@@ -55,6 +55,8 @@ class LearnedTransfer {
   std::size_t site_count() const { return static_cast<std::size_t>(mean.size()) / sh::count; }
   /// PoseSpace::Place::range up to which the model beats rotation alone (`rebake study transfer`).
   static constexpr double trusted_range = 2;
+  /// Keeps only the pose space and the errors, for a network that predicts instead.
+  void drop_weights();
   /// Memory of the model in bytes.
   std::uint64_t memory() const;
 

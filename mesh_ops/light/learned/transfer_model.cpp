@@ -295,6 +295,7 @@ TransferModel transfer_model_of(std::string_view bytes) {
     if (key >= model.sites) throw Error("a site index is out of range");
   for (const std::uint32_t probe : model.learned.probes)
     if (probe >= model.keys.size()) throw Error("a site index is out of range");
+  if (net || published) model.learned.drop_weights();
   try {
     if (net) model.net.emplace(std::move(*net));
     if (published)

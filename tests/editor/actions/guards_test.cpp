@@ -245,7 +245,7 @@ TEST_F(Guards, PicturesThatMaterialsNameAreProtectedEvenIfNotRead) {
   fs::create_directories(path("obj"));
   write("obj/m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\n");
   write("obj/m.mtl",
-        "newmtl a\nKd 1 0 0\nmap_d opacity.png\nmap_Bump -bm 0.5 the bumps.png\nnewmtl unused\nnorm n.png\n");
+        "newmtl a\nKd 1 0 0\nmap_d opacity.png\nmap_Bump -bm 0.5 .\\\\the bumps.png\nnewmtl unused\nnorm n.png\n");
   for (const std::string name : {"opacity.png", "the bumps.png", "n.png", "other.png"}) {
     write("obj/" + name, "\x89PNG of somebody");
     const bool is_named = name != "other.png";

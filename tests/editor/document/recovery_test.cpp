@@ -234,7 +234,6 @@ TEST_F(Recovery, JournalBegunAfterUndoRecoversRedoneEdits) {
   EXPECT_EQ(recovered.document.scene().background, last.color);
 }
 
-// Undone steps that could be redone are said to be left out.
 TEST_F(Recovery, RecoversFromReadOnlyMedia) {
   class ReadOnly final : public FileCalls {
    public:
@@ -255,6 +254,7 @@ TEST_F(Recovery, RecoversFromReadOnlyMedia) {
   EXPECT_EQ(read_file(path("journal")), bytes);
 }
 
+// Undone steps that could be redone are said to be left out.
 TEST_F(Recovery, CountsUndoneStepsThatCannotBeRecovered) {
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/second"), {});
   {

@@ -4,14 +4,13 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-
 #include <sys/mount.h>
 #include <sys/stat.h>
-#include <random>
 
 #include <cerrno>
 #include <fstream>
 #include <functional>
+#include <random>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
@@ -282,7 +281,6 @@ TEST(SourceGuard, ProtectsFilesThatASourceLinksTo) {
   EXPECT_THROW(guard.check_file(folder.path() / "hard.json"), FileError);
 }
 
-// Simulates two paths to one file without a link: a bind mount, or a case-insensitive file system.
 TEST(WriteFileAtomically, RefusesNamesThatChecksOfTheFileWouldNotFind) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "file";
@@ -315,6 +313,7 @@ TEST(WriteFileAtomically, RefusesNamesThatChecksOfTheFileWouldNotFind) {
   EXPECT_GT(written, 50);
 }
 
+// Simulates two paths to one file without a link: a bind mount, or a case-insensitive file system.
 class OneFileTwoNames : public FileCalls {
  public:
   OneFileTwoNames(fs::path name, fs::path other) : name_(std::move(name)), other_(std::move(other)) {}

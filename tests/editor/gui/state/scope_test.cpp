@@ -1,5 +1,5 @@
-// Nothing outside the scope changes: random nodes in groups, hidden, locked, picked and selected, and every command
-// that works on the scope, which the test finds by itself.
+// Nothing outside the scope changes: random nodes in groups, hidden, locked, picked and selected, and commands
+// that work on the scope, which the test finds by itself.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

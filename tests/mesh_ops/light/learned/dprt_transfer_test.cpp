@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <numbers>
 #include <random>
 
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/light/learned/dprt_ranges.h"
 #include "mesh_ops/light/learned/transfer_model.h"
 
@@ -86,6 +88,32 @@ TEST(DprtTransfer, FilesHoldOnlyWhatPredictsAndRefuseDamage) {
   DiskChart wrong = grid_chart(image_side);
   wrong.uvs.front().x() = 2;
   EXPECT_THROW(DprtTransfer(wrong, vertices, network_with_weights(0), 1), std::invalid_argument);
+}
+
+// Version 2 kept the linear model beside a network; it is read, and written as version 3.
+TEST(DprtTransfer, ModelsOfVersionTwoAreReadAndWrittenAgain) {
+  TransferModel model = model_of({grid_chart(image_side), vertices, network_with_weights(0), 1});
+  model.published.reset();
+  const auto weights = unet_weight_count(UnetForm::added, 8);
+  model.net.emplace(UnetTransfer::State{grid_chart(image_side), 64, 8, std::vector<float>(weights, 0.01F),
+                                        Box(Vec3(0, 0, 0), Vec3(1, 1, 1)),
+                                        Eigen::VectorXf::Constant(vertices * sh::count, 0.5F), 1, 2});
+  // A file of version 2, made of one of version 3.
+  const Eigen::Index size = vertices * sh::count, components = 2, dimensions = model.learned.space.dimensions();
+  model.learned.mean = Eigen::VectorXf::Zero(size);
+  model.learned.components = Eigen::MatrixXf::Zero(size, components);
+  model.learned.linear = Eigen::MatrixXd::Zero(components, dimensions + 1);
+  std::string old = bytes_of(model);
+  const std::size_t at = old.find("rebake transfer model 3");
+  ASSERT_NE(at, std::string::npos);
+  old.replace(at, 23, "rebake transfer model 2");
+  const std::uint64_t hash = content_hash(std::string_view(old).substr(0, old.size() - sizeof hash));
+  std::memcpy(old.data() + old.size() - sizeof hash, &hash, sizeof hash);
+  const TransferModel read = transfer_model_of(old);
+  ASSERT_TRUE(read.net);
+  EXPECT_EQ(read.learned.components.size(), 0);
+  const TransferModel again = transfer_model_of(bytes_of(read));
+  EXPECT_EQ(again.net->state().weights, model.net->state().weights);
 }
 
 TEST(DprtTransfer, RangesCoverTheTrainingPosesWithAMargin) {
