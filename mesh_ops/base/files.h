@@ -32,8 +32,8 @@ class FileBytes {
 /// Calls `use` with the contents of a regular file in pieces of at most 1 MiB. Throws FileError.
 void read_in_pieces(const std::filesystem::path& path, const std::function<void(std::string_view piece)>& use);
 
-/// Throws FileError if ".." follows a component that is no folder. The system finds no file at such a path, so checks
-/// of what is there would pass, while its resolved form may lead to a file.
+/// Throws FileError if ".." follows a component that is no folder. The system finds no file at such a path, although
+/// its resolved form may be the path of an existing file, which checks would then miss.
 void check_parents(const std::filesystem::path& path);
 
 /// Absolute path without "." components and without a trailing slash. Symbolic links are resolved only if the path

@@ -30,7 +30,7 @@ const FieldInfo* field_named(const std::vector<FieldInfo>& fields, const char* n
   return found == fields.end() ? nullptr : &*found;
 }
 
-// Selected triangles of the scope's nodes, or of `only` and what is in it, in a scene or a preview of it.
+// Number of selected triangles in a scene or its preview: in the nodes of the scope, or in `only` and its descendants.
 std::size_t selected_in(const DocumentEditor& editor, const Scene& scene, NodeId only) {
   const auto counts = [&](const PlacedNode& placed) {
     if (only == NodeId::none) return editor.in_scope(scene, placed);

@@ -20,6 +20,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
 #include "tests/support/made_scenes.h"
+#include "tests/support/window_state.h"
 
 namespace rebake::test {
 namespace {
@@ -51,36 +52,21 @@ TEST(EditorContext, MeasuresCostsInTheView) {
   wait();
 }
 
-// The state of the window without its display, with a scene of two objects.
-class EditorContextTest : public ::testing::Test {
+// With a scene of two objects.
+class EditorContextTest : public WindowState {
  protected:
-  void SetUp() override {
-    ::setenv("XDG_STATE_HOME", home.path().c_str(), 1);
-    editor = std::make_unique<EditorContext>(Settings{}, [] {});
+  EditorContextTest() {
     for (const char* name : {"ball", "box"}) {
       export_scene(scene_of(made_object({.columns = 8, .rows = 4})), home.path() / name, {});
       editor->project.open({(home.path() / name).string()});
     }
     wait();
   }
-  void TearDown() override {
-    editor->jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
-    wait();
-  }
-  void wait() {
-    do {
-      while (editor->jobs.worker.busy() || editor->previews.busy())
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      editor->update();
-    } while (editor->jobs.worker.busy());
-  }
   NodeId id(const char* name) const { return find(editor->scene(), std::string(name))->id; }
   std::size_t selected(const char* name) const {
     const NodePtr node = find(editor->scene(), std::string(name));
     return node->selection ? count(*node->selection) : 0;
   }
-  TemporaryFolder home;
-  std::unique_ptr<EditorContext> editor;
 };
 
 TEST_F(EditorContextTest, ToolsWorkOnThePickedNodes) {

@@ -6,42 +6,27 @@
 #include <map>
 #include <random>
 #include <set>
-#include <thread>
 
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/hide.h"
 #include "editor/edits/nodes/lock.h"
 #include "editor/edits/select/select_triangles.h"
 #include "editor/gui/state/commands.h"
-#include "editor/gui/state/editor_context.h"
 #include "mesh_ops/formats/export.h"
-#include "tests/support/made_scenes.h"
+#include "tests/support/window_state.h"
 
 namespace rebake::test {
 namespace {
 
 constexpr int objects = 4;
 
-class Scope : public ::testing::Test {
+class Scope : public WindowState {
  protected:
   Scope() {
-    ::setenv("XDG_STATE_HOME", home_.path().c_str(), 1);
-    editor = std::make_unique<EditorContext>(Settings{}, [] {});
-    export_scene(scene_of(made_object({.columns = 4, .rows = 3})), home_.path() / "ball", {});
-    for (int k = 0; k < objects; ++k) editor->project.open({(home_.path() / "ball").string()});
+    export_scene(scene_of(made_object({.columns = 4, .rows = 3})), home.path() / "ball", {});
+    for (int k = 0; k < objects; ++k) editor->project.open({(home.path() / "ball").string()});
     wait();
     for (const PlacedNode& placed : placed_nodes(editor->scene())) nodes.push_back(placed.node->id);
-  }
-  ~Scope() override {
-    editor->jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
-    wait();
-  }
-  void wait() {
-    do {
-      while (editor->jobs.worker.busy() || editor->previews.busy())
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      editor->update();
-    } while (editor->jobs.worker.busy());
   }
   template <class T>
   void each(const std::set<NodeId>& of) {
@@ -69,8 +54,6 @@ class Scope : public ::testing::Test {
                                   placed.to_world.matrix()};
     return state;
   }
-  TemporaryFolder home_;
-  std::unique_ptr<EditorContext> editor;
   std::vector<NodeId> nodes;
   std::mt19937 random{11};
 };
