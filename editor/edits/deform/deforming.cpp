@@ -210,8 +210,7 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
   for (std::uint32_t v = 0; v < taken.size(); ++v)
     if (taken[v] != 0) result.push_back(v);
   if (move.points.ranges.empty()) {
-    Box box;
-    for (const Vec3& v : cage.vertices) box.extend(v);
+    const Box box = surface_box(cage);
     const double unit = shares ? box.diagonal().norm() : 1;
     double least = std::numeric_limits<double>::infinity();
     std::optional<std::uint32_t> nearest;

@@ -14,15 +14,20 @@ namespace rebake {
 
 namespace {
 
-// Subtracts the mean motion of the vertices if no vertex deviates from it by half its length, and returns it (else
+// Subtracts the mean motion of the used vertices if none deviates from it by half its length, and returns it (else
 // zero). Weights sum to 1 only up to rounding, and a long translation would amplify that error.
-Vec3 subtract_mean_motion(std::vector<Vec3>& motions, std::size_t vertices) {
+Vec3 subtract_mean_motion(std::vector<Vec3>& motions, const Cage& rest) {
+  const std::vector<std::uint8_t> used = used_vertices(rest);
+  const auto count = static_cast<double>(std::count(used.begin(), used.end(), 1));
   Vec3 mean(0, 0, 0);
-  for (std::size_t v = 0; v < vertices; ++v) mean += motions[v] / static_cast<double>(vertices);
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v] != 0) mean += motions[v] / count;
   double spread = 0;
-  for (std::size_t v = 0; v < vertices; ++v) spread = std::max(spread, (motions[v] - mean).stableNorm());
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v] != 0) spread = std::max(spread, (motions[v] - mean).stableNorm());
   if (!(2 * spread < mean.stableNorm())) return Vec3(0, 0, 0);
-  for (std::size_t v = 0; v < vertices; ++v) motions[v] -= mean;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v] != 0) motions[v] -= mean;
   return mean;
 }
 
@@ -60,7 +65,7 @@ DeformedPoints deform_points(const Coordinates& coordinates, const Cage& rest, c
   if (jacobians) result.jacobians.assign(points.size(), Mat3::Identity());
   if (points.empty()) return result;
   std::vector<Vec3> motions = coordinates.row_motions(rest, moved);
-  const Vec3 shift = subtract_mean_motion(motions, rest.vertices.size());
+  const Vec3 shift = subtract_mean_motion(motions, rest);
   const std::vector<std::uint32_t> order = curve_order(points);
   for_blocks(coordinates, points, order, jacobians, progress,
              [&](std::size_t block, const std::vector<double>& weights, const std::vector<double>& slopes,
@@ -108,7 +113,7 @@ std::uint64_t CageBinding::memory() const {
 void CageBinding::positions(const std::vector<Vec3>& moved, std::vector<Vec3>& out) const {
   out.resize(points_.size());
   std::vector<Vec3> motions = coordinates_.row_motions(rest_, moved);
-  const Vec3 shift = subtract_mean_motion(motions, rest_.vertices.size());
+  const Vec3 shift = subtract_mean_motion(motions, rest_);
   const MovingRows moving = moving_rows(motions);
   const std::size_t block_size = coordinates_.rows() * batch_lanes;
   const RowSums sum_rows = row_sums();

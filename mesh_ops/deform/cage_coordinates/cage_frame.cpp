@@ -77,8 +77,8 @@ Wide3 wide_local(const CageFrame& frame, const Vec3& point) {
 }  // namespace
 
 CageFrame frame_of(const Cage& cage) {
-  Box box;
-  for (const Vec3& v : cage.vertices) box.extend(v);
+  const Box box = surface_box(cage);
+  const std::vector<std::uint8_t> used = used_vertices(cage);
   if (box.isEmpty() || !box.sizes().allFinite() || box.sizes().maxCoeff() <= 0)
     throw Error("the cage has no extent, or coordinates out of range");
   CageFrame frame;
@@ -95,9 +95,11 @@ CageFrame frame_of(const Cage& cage) {
       std::max(plane_local::surface_tolerance<double>, 2 * std::numeric_limits<double>::epsilon() * farthest);
   std::vector<Wide3> points;
   frame.given = cage.vertices;
-  for (const Vec3& v : cage.vertices) {
-    frame.vertices.push_back(frame.to_local(v));
-    points.push_back(wide_local(frame, v));
+  for (std::size_t v = 0; v < cage.vertices.size(); ++v) {
+    // Unused ones may lie anywhere, even where local coordinates overflow.
+    const Vec3& place = used[v] != 0 ? cage.vertices[v] : frame.center;
+    frame.vertices.push_back(frame.to_local(place));
+    points.push_back(wide_local(frame, place));
   }
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges;
   const auto edge_of = [&](std::uint32_t a, std::uint32_t b) {

@@ -25,7 +25,9 @@ struct Held {
 
 std::vector<Vec3> Coordinates::row_motions(const Cage& rest, const std::vector<Vec3>& moved) const {
   std::vector<Vec3> motions(rows_, Vec3(0, 0, 0));
-  for (std::size_t v = 0; v < rest.vertices.size(); ++v) motions[v] = moved[v] - rest.vertices[v];
+  const std::vector<std::uint8_t> used = used_vertices(rest);
+  for (std::size_t v = 0; v < rest.vertices.size(); ++v)
+    if (used[v] != 0) motions[v] = moved[v] - rest.vertices[v];
   return motions;
 }
 

@@ -45,7 +45,8 @@ class Coordinates {
   /// coordinates are undefined at a point. Thread-safe.
   virtual void compute_weights(const std::array<Vec3, batch_lanes>& points, double* weights, double* gradients,
                                std::uint8_t* outside) const = 0;
-  /// Motion per row when the cage's vertices go from `rest` to `moved` (same faces). Zero for rows that do not move.
+  /// Motion per row when the cage's vertices go from `rest` to `moved` (same faces). Zero for rows that
+  /// do not move, and for vertices that no face uses.
   virtual std::vector<Vec3> row_motions(const Cage& rest, const std::vector<Vec3>& moved) const;
 
  protected:

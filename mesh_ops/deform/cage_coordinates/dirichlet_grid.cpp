@@ -87,8 +87,7 @@ Vec3 DirichletGrid::place(std::size_t node) const {
 }
 
 DirichletGrid::DirichletGrid(const Cage& surface, int resolution, const Progress& progress) {
-  Box box;
-  for (const Vec3& v : surface.vertices) box.extend(v);
+  const Box box = surface_box(surface);
   step_ = box.sizes().maxCoeff() / resolution;
   origin_ = box.min() - Vec3::Constant(2.5 * step_);
   std::size_t nodes = 1;

@@ -25,9 +25,7 @@ class Harmonic final : public Coordinates {
       : Coordinates(cage.vertices.size()), frame_(frame_of(cage)) {
     if (resolution < 8 || resolution > 256) throw FieldError("resolution", "must lie between 8 and 256");
     const Cage local{frame_.vertices, cage.faces};
-    Box box;
-    for (const Vec3& v : local.vertices) box.extend(v);
-    const double step = box.sizes().maxCoeff() / resolution;
+    const double step = surface_box(local).sizes().maxCoeff() / resolution;
     check_memory(resolution, volume(local) / (step * step * step));
     check_fineness(local, resolution, step);
     grid_ = std::make_unique<DirichletGrid>(local, resolution, progress);

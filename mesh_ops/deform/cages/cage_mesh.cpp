@@ -63,9 +63,22 @@ Cage lattice_cage(const Box& box, int n, int m, int k) {
   return cage;
 }
 
-double volume(const Cage& cage) {
+std::vector<std::uint8_t> used_vertices(const Cage& cage) {
+  std::vector<std::uint8_t> used(cage.vertices.size(), 0);
+  for (const Face& face : cage.faces)
+    for (const std::uint32_t v : face) used[v] = 1;
+  return used;
+}
+
+Box surface_box(const Cage& cage) {
   Box box;
-  for (const Vec3& v : cage.vertices) box.extend(v);
+  for (const Face& face : cage.faces)
+    for (const std::uint32_t v : face) box.extend(cage.vertices[v]);
+  return box;
+}
+
+double volume(const Cage& cage) {
+  const Box box = surface_box(cage);
   if (box.isEmpty()) return 0;
   // 50 digits: for a rod that is 1e8 times as long as wide, the volume would be lost in the rounding of double.
   using Exact = boost::multiprecision::cpp_bin_float_50;
@@ -188,8 +201,7 @@ Cage checked_cage(Cage cage) {
   if (open > 0)
     throw Error(fmt::format("the cage is open: {} of its edges belong to one triangle only; close the holes", open));
   // The longest side of the box decides, since a cage may be thin.
-  Box box;
-  for (const Vec3& v : cage.vertices) box.extend(v);
+  const Box box = surface_box(cage);
   const double extent = box.sizes().maxCoeff();
   if (!(extent > 0) || !std::isfinite(extent) || extent < 1e-150)
     throw Error("the cage has no extent, or coordinates out of range");

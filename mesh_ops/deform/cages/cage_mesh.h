@@ -28,6 +28,12 @@ Cage lattice_cage(const Box& box, int n, int m, int k);
 /// Throws Error if the volume is zero. Faces without area are allowed and get no weight.
 Cage checked_cage(Cage cage);
 
+/// Per vertex: 1 if a face uses it. Others have no influence, wherever they lie.
+std::vector<std::uint8_t> used_vertices(const Cage& cage);
+
+/// Box of the vertices that faces use.
+Box surface_box(const Cage& cage);
+
 /// Signed volume: positive if the faces point outwards.
 double volume(const Cage& cage);
 

@@ -158,10 +158,9 @@ ConstrainedCage as_rigid_as_possible(const Cage& cage, const std::vector<Constra
   if (held.empty()) throw Error("no cage point is fixed or moved; fix some points and move others");
   ConstrainedCage result{cage.vertices};
   const std::vector<std::uint32_t> component = components(cage);
-  std::vector<std::uint8_t> has_held(cage.vertices.size(), 0), used(cage.vertices.size(), 0);
+  const std::vector<std::uint8_t> used = used_vertices(cage);
+  std::vector<std::uint8_t> has_held(cage.vertices.size(), 0);
   for (const ConstrainedVertex& h : held) has_held[component[h.vertex]] = 1;
-  for (const Face& face : cage.faces)
-    for (const std::uint32_t v : face) used[v] = 1;
   if (std::none_of(held.begin(), held.end(), [&](const ConstrainedVertex& h) { return used[h.vertex] != 0; }))
     throw Error("none of the fixed or moved points belongs to a triangle of the cage; fix some that do");
   // Constrained vertices get exactly their targets.
@@ -174,8 +173,7 @@ ConstrainedCage as_rigid_as_possible(const Cage& cage, const std::vector<Constra
   for (std::uint32_t v = 0; v < cage.vertices.size(); ++v)
     solved[v] = used[v] != 0 && has_held[component[v]] != 0 ? 1 : 0;
   // Scaled to a box of diagonal 1, which the solver's tolerances expect.
-  Box box;
-  for (const Vec3& v : cage.vertices) box.extend(v);
+  const Box box = surface_box(cage);
   const double size = box.diagonal().stableNorm();
   const auto local = [&](const Vec3& v) { return Vec3((v - box.center()) / size); };
   std::vector<RigidMotion> motions(cage.vertices.size());

@@ -39,6 +39,44 @@ TEST(CageDeformation, IdentityIsBitExactAndDuplicatesMoveTogether) {
   }
 }
 
+// Numbers of vertices belong to the user, so that unused ones stay in the cage; they must not count.
+TEST(CageDeformation, VerticesThatNoFaceUsesChangeNoBits) {
+  for (const auto& [name, cage] : hard_cages()) {
+    if (cage.vertices.size() > 200) continue;
+    std::vector<Vec3> points = hard_points(cage);
+    points.resize(std::min<std::size_t>(points.size(), 40));
+    std::vector<Vec3> moved = cage.vertices;
+    for (Vec3& v : moved) v = v * 1.1 + Vec3(5, v.x(), 3);
+    // One unused vertex before the others, two after them, at any distance and with any motion.
+    Cage more;
+    more.vertices.emplace_back(1e6, -3, 1e-9);
+    more.vertices.insert(more.vertices.end(), cage.vertices.begin(), cage.vertices.end());
+    more.vertices.emplace_back(-1e300, 1e300, 0);
+    more.vertices.emplace_back(0, 0, 0);
+    for (const Face& face : cage.faces) more.faces.push_back({face[0] + 1, face[1] + 1, face[2] + 1});
+    std::vector<Vec3> more_moved{Vec3(-1e200, 0, 0)};
+    more_moved.insert(more_moved.end(), moved.begin(), moved.end());
+    more_moved.emplace_back(1.7e308, -1.7e308, 3);
+    more_moved.emplace_back(0, 0, 0);
+    const Cage checked = checked_cage(more);
+    EXPECT_EQ(checked.faces == more.faces, checked_cage(cage).faces == cage.faces) << name;
+    EXPECT_EQ(volume(more), volume(cage)) << name;
+    for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green}) {
+      const auto expected = deform_points(*coordinates_of(cage, kind, 0), cage, moved, points, true);
+      const auto found = deform_points(*coordinates_of(more, kind, 0), more, more_moved, points, true);
+      EXPECT_EQ(found.points, expected.points) << name << ", " << static_cast<int>(kind);
+      EXPECT_EQ(found.jacobians, expected.jacobians) << name << ", " << static_cast<int>(kind);
+      EXPECT_EQ(found.outside, expected.outside) << name << ", " << static_cast<int>(kind);
+    }
+    if (name != "dented") continue;  // thin ones need many cells
+    const auto expected = deform_points(*harmonic_coordinates(cage, 12), cage, moved, points, false);
+    const auto found = deform_points(*harmonic_coordinates(more, 12), more, more_moved, points, false);
+    EXPECT_EQ(found.outside, expected.outside);
+    // Vertices are solved for in groups, and a group iterates until all of it has converged.
+    for (std::size_t k = 0; k < points.size(); ++k) EXPECT_LE((found.points[k] - expected.points[k]).norm(), 1e-12);
+  }
+}
+
 TEST(CageDeformation, RigidCageMotionsMovePointsRigidly) {
   const Cage cage = dented();
   const Affine motion =
