@@ -40,7 +40,9 @@ HolePatch hole_patch(const HoleLoop& loop) {
   for (const Vec3& p : loop.points) border.push_back(point(p));
   for (const Vec3& p : loop.outer_points) outer.push_back(point(p));
   std::vector<Corners> coarse;
-  pmp::triangulate_hole_polyline(border, outer, std::back_inserter(coarse));
+  // The search among Delaunay triangles is faster, but decides ties, as regular borders have, by memory addresses.
+  pmp::triangulate_hole_polyline(border, outer, std::back_inserter(coarse),
+                                 CGAL::parameters::use_delaunay_triangulation(false));
   if (coarse.empty()) return {};
   Mesh mesh;
   std::vector<Mesh::Vertex_index> vertices;

@@ -1,9 +1,13 @@
 // Holes that removed triangles leave: borders, patches, and the features that continue.
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <random>
+
 #include "editor/edits/edit.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/fill/filled_holes.h"
+#include "mesh_ops/fill/hole_patch.h"
 #include "mesh_ops/fill/patch_texture.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/index/footprint.h"
@@ -178,6 +182,33 @@ TEST(HoleLoops, SeparateWhereTheyTouch) {
   EXPECT_EQ(found.loops[0].points.size(), 4U);
   EXPECT_EQ(found.loops[1].points.size(), 4U);
   EXPECT_EQ(found.open_edges, 0U);
+}
+
+// Regular borders have several equally good triangulations; memory addresses must not decide among them.
+TEST(HolePatch, RegularBordersAreFilledTheSameEveryTime) {
+  std::mt19937 random(1);
+  std::vector<std::unique_ptr<char[]>> blocks;  // so that addresses differ between the calls
+  for (std::size_t points = 4; points < 64; points += 3)
+    for (const bool square : {true, false}) {
+      const Mat3 turn = Eigen::AngleAxisd(0.7 * static_cast<double>(points % 3), Vec3(1, 2, 3).normalized()).matrix();
+      HoleLoop loop;
+      for (std::size_t k = 0; k < points; ++k) {
+        const double angle = 2 * EIGEN_PI * static_cast<double>(k) / static_cast<double>(points);
+        Vec3 point(std::cos(angle), std::sin(angle), 0);
+        if (square) point /= point.cwiseAbs().maxCoeff();
+        loop.points.emplace_back(turn * point);
+        loop.outer_points.emplace_back(turn * (1.2 * point - Vec3(0, 0, square ? 0 : 0.3)));
+      }
+      const HolePatch first = hole_patch(loop);
+      EXPECT_FALSE(first.faces.empty());
+      for (int call = 0; call < 8; ++call) {
+        for (int k = 0; k < 60; ++k) blocks.push_back(std::make_unique<char[]>(16 + random() % 3000));
+        for (std::size_t k = random() % 2; k < blocks.size(); k += 2) blocks[k].reset();
+        const HolePatch again = hole_patch(loop);
+        EXPECT_EQ(again.vertices, first.vertices) << points << (square ? ", square" : ", circle");
+        EXPECT_EQ(again.faces, first.faces) << points << (square ? ", square" : ", circle");
+      }
+    }
 }
 
 TEST(HarmonicFeatures, StayWithinTheBorder) {
