@@ -16,11 +16,6 @@ namespace {
 using Wide3 = std::array<Wide, 3>;
 
 Wide3 wide(const Vec3& v) { return {Wide(v.x()), Wide(v.y()), Wide(v.z())}; }
-Wide3 minus(const Wide3& a, const Wide3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Wide dot(const Wide3& a, const Wide3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Wide3 cross(const Wide3& a, const Wide3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 Wide3 times(const Wide3& a, const Wide& s) { return {a[0] * s, a[1] * s, a[2] * s}; }
 template <class R>
 std::array<R, 3> rounded(const Wide3& a) {

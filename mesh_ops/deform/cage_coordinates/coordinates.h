@@ -63,7 +63,8 @@ std::vector<MeanValueBatch> mean_value_batches();
 std::unique_ptr<Coordinates> mean_value_coordinates(const Cage& cage, MeanValueBatch batch = mean_value_batches()[0]);
 std::unique_ptr<Coordinates> green_coordinates(const Cage& cage);
 /// Harmonic coordinates, solved on a DirichletGrid with `resolution` cells along the cage's longest side (8 … 256). The
-/// error is of second order in the cell size up to the surface; sums and linear functions are exact to rounding. Throws
+/// error is of second order in the cell size up to the surface; sums and linear functions are exact to rounding. Parts
+/// closer to each other than a cell follow each other. Throws
 /// FieldError for a resolution that is out of range, too coarse for the cage, or needs too much memory.
 std::unique_ptr<Coordinates> harmonic_coordinates(const Cage& cage, int resolution, const Progress& progress = {});
 

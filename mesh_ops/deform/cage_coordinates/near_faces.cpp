@@ -19,6 +19,8 @@ constexpr double on_surface = 1e-30;
 // Gradients on the surface are taken this far inside: thin cages are thicker, and 50 digits compensate the
 // cancellation.
 constexpr double depth_inside = 1e-20;
+// Such points are at least this share of that depth from all faces.
+constexpr double least_share = 1e-10;
 // A face counts as containing a 50-digit point if it is no farther from it than this.
 constexpr double wide_rounding = 1e-40;
 
@@ -96,18 +98,57 @@ double angle_at(const WideFace& face, const pl::Seen<Wide>& s) {
   return 1;
 }
 
-// For a point on the surface, a point just inside; otherwise nothing. The direction is the angle-weighted normal of the
-// faces that meet, which points outwards at every corner (Bærentzen, Aanæs 2005).
+// Whether the segment between two points passes through the face.
+bool passes(const WideFace& face, const WidePoint& from, const WidePoint& to) {
+  const auto above = [&](const WidePoint& p) { return dot(minus(p, face.corners[0]), face.frame.normal) > 0; };
+  if (above(from) == above(to)) return false;
+  const WidePoint along = minus(to, from);
+  std::array<bool, 3> left;
+  for (std::size_t k = 0; k < 3; ++k)
+    left[k] = dot(along, cross(minus(face.corners[k], from), minus(face.corners[(k + 1) % 3], from))) > 0;
+  return left[0] == left[1] && left[1] == left[2];
+}
+
+// A point just inside, beside a face that contains the point `on` of the surface: over its interior, and far closer to
+// it than to others. Not on the face's symmetry axis, where segments might pass through edges.
+WidePoint beside(const WideFace& face, const WidePoint& on) {
+  WidePoint into = minus({Wide(0), Wide(0), Wide(0)}, on);
+  for (const auto& [corner, share] : {std::pair(0, 0.5), std::pair(1, 0.3), std::pair(2, 0.2)})
+    into = moved(into, face.corners[static_cast<std::size_t>(corner)], Wide(share));
+  const WidePoint over = moved(on, into, Wide(depth_inside / sqrt(dot(into, into))));
+  return moved(over, face.frame.normal, Wide(-depth_inside * least_share));
+}
+
+// For a point on the surface, a point just inside; otherwise nothing. In the direction of the angle-weighted normal of
+// the faces that meet, which is inside at most corners (Bærentzen, Aanæs 2005); not where parts of the cage touch, nor
+// at the tip of a cone that does not contain its mean direction. There, beside the face with the largest angle.
 std::optional<WidePoint> point_just_inside(const std::vector<WideFace>& faces, const WidePoint& point) {
   const std::optional<WidePoint> on = snapped(faces, point);
   if (!on) return std::nullopt;
   WidePoint normal{Wide(0), Wide(0), Wide(0)};
+  const WideFace* widest = nullptr;
+  double widest_angle = 0;
   for (const WideFace& face : faces) {
     const pl::Seen<Wide> s = seen_from(face, *on);
-    if (pl::distance_of(s) <= wide_rounding) normal = moved(normal, face.frame.normal, Wide(angle_at(face, s)));
+    if (pl::distance_of(s) > wide_rounding) continue;
+    const double angle = angle_at(face, s);
+    normal = moved(normal, face.frame.normal, Wide(angle));
+    if (angle <= widest_angle) continue;
+    widest_angle = angle;
+    widest = &face;
   }
-  const Wide length = sqrt(Wide(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]));
-  return length > 0 ? moved(*on, normal, Wide(-depth_inside / length)) : *on;
+  if (widest == nullptr) return on;
+  const WidePoint inside = beside(*widest, *on);
+  const Wide length = sqrt(dot(normal, normal));
+  if (!(length > 0)) return inside;
+  const WidePoint below = moved(*on, normal, Wide(-depth_inside / length));
+  // Along an edge where parts touch, or outside.
+  const bool is_close = std::any_of(faces.begin(), faces.end(), [&](const WideFace& face) {
+    return pl::distance_of(seen_from(face, below)) < least_share * depth_inside;
+  });
+  const auto between =
+      std::count_if(faces.begin(), faces.end(), [&](const WideFace& face) { return passes(face, inside, below); });
+  return is_close || between % 2 != 0 ? inside : below;
 }
 
 // The point where gradients are taken: just inside for points on the surface.
@@ -123,6 +164,23 @@ template <class T>
 void add_terms(const WideFace& face, const pl::Seen<T>& s, std::vector<T>& sums) {
   const std::array<T, 3> terms = pl::mean_value(face.frame, s);
   for (std::size_t k = 0; k < 3; ++k) sums[face.frame.vertices[k]] += terms[k];
+}
+
+// Where parts with separate vertices touch, only the sum of the gradients of equal vertices is finite. The first one
+// gets it.
+void join_equal_vertices(const CageFrame& cage, const std::vector<WideFace>& faces, std::vector<WideDual>& gradients) {
+  std::vector<std::uint32_t> vertices;
+  for (const WideFace& face : faces)
+    vertices.insert(vertices.end(), face.frame.vertices.begin(), face.frame.vertices.end());
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (std::size_t k = 1; k < vertices.size(); ++k) {
+    const auto equal = std::find_if(vertices.begin(), vertices.begin() + static_cast<std::ptrdiff_t>(k),
+                                    [&](std::uint32_t v) { return cage.given[v] == cage.given[vertices[k]]; });
+    if (equal == vertices.begin() + static_cast<std::ptrdiff_t>(k)) continue;
+    gradients[*equal] += gradients[vertices[k]];
+    gradients[vertices[k]] = WideDual(Wide(0));
+  }
 }
 
 }  // namespace
@@ -148,9 +206,11 @@ std::vector<Wide> near_faces::wide_values(const CageFrame& cage, const WidePoint
 std::vector<WideDual> near_faces::wide_gradients(const CageFrame& cage, const WidePoint& point,
                                                  std::span<const FaceFrame* const> near, std::vector<WideDual> sums) {
   const std::vector<WideFace> faces = wide_faces(cage, near);
-  const pl::Point<WideDual> place = with_gradients(gradient_point(faces, point));
+  const std::optional<WidePoint> inside = point_just_inside(faces, point);
+  const pl::Point<WideDual> place = with_gradients(inside.value_or(point));
   for (const WideFace& face : faces) add_terms(face, seen_from(face, place), sums);
   normalise(sums);
+  if (inside) join_equal_vertices(cage, faces, sums);
   return sums;
 }
 

@@ -9,6 +9,16 @@ namespace rebake {
 /// Number with 50 decimal digits, for the few terms that lose all digits to cancellation in double.
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
+inline std::array<Wide, 3> minus(const std::array<Wide, 3>& a, const std::array<Wide, 3>& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline Wide dot(const std::array<Wide, 3>& a, const std::array<Wide, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline std::array<Wide, 3> cross(const std::array<Wide, 3>& a, const std::array<Wide, 3>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 /// Local coordinates (CageFrame) of a point in the space of the cage.
 std::array<Wide, 3> wide_local_point(const CageFrame& cage, const Vec3& point);
 

@@ -2,9 +2,12 @@
 // and vertices.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <tuple>
 #include <utility>
 
+#include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 #include "mesh_ops/deform/cage_coordinates/coordinates.h"
 #include "tests/support/coordinate_errors.h"
 #include "tests/support/gold.h"
@@ -181,6 +184,78 @@ TEST(MeanValue, JacobiansOnEdgeExtensionsAgreeWith120Digits) {
     for (std::size_t v = 0; v < exact.size(); ++v)
       EXPECT_LE((exact[v] - gradients[v]).norm(), 1e-8) << "at " << point.transpose() << " weight " << v;
   }
+}
+
+Cage joined(const Cage& a, const Cage& b) {
+  Cage both = a;
+  const auto first = static_cast<std::uint32_t>(a.vertices.size());
+  both.vertices.insert(both.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const Face& face : b.faces) both.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+  return both;
+}
+
+// With equal vertices merged.
+Cage merged(const Cage& cage) {
+  Cage result;
+  std::vector<std::uint32_t> number;
+  for (const Vec3& v : cage.vertices) {
+    const auto found = std::find(result.vertices.begin(), result.vertices.end(), v);
+    number.push_back(static_cast<std::uint32_t>(found - result.vertices.begin()));
+    if (found == result.vertices.end()) result.vertices.push_back(v);
+  }
+  for (const Face& face : cage.faces) result.faces.push_back({number[face[0]], number[face[1]], number[face[2]]});
+  return result;
+}
+
+// A pyramid with its tip at the origin over an octagon with a notch. The mean direction of the tip's faces is outside.
+Cage notched_pyramid() {
+  const std::vector<Vec3> base{{-1, -1, 1},    {1, -1, 1},  {1, -0.4, 1}, {-0.6, -0.4, 1},
+                               {-0.6, 0.4, 1}, {1, 0.4, 1}, {1, 1, 1},    {-1, 1, 1}};
+  Cage cage{base, {}};
+  cage.vertices.emplace_back(0, 0, 0);
+  for (std::uint32_t k = 0; k < 8; ++k) cage.faces.push_back({(k + 1) % 8, k, 8});
+  for (const Face& face : {Face{0, 1, 2}, Face{0, 2, 3}, Face{0, 3, 4}, Face{0, 4, 7}, Face{4, 5, 6}, Face{4, 6, 7}})
+    cage.faces.push_back(face);
+  return checked_cage(cage);
+}
+
+// Where parts of a cage touch, and at tips of which the mean direction is outside, there is no plain normal. Any limit
+// from inside is right, and all agree if the cage moves rigidly.
+TEST(CageCoordinates, GradientsAreThoseFromInsideWherePartsTouch) {
+  const auto box = [](const Vec3& from, const Vec3& to) { return lattice_cage(Box(from, to), 1, 1, 1); };
+  const Cage unit = box(Vec3(0, 0, 0), Vec3(1, 1, 1)), beyond = box(Vec3(1, 1, 1), Vec3(2, 2, 2));
+  const Vec3 tip(1, 1, 1);
+  const std::vector<std::tuple<std::string, Cage, std::vector<Vec3>>> cages = {
+      {"one vertex", merged(joined(unit, beyond)), {tip}},
+      {"equal vertices", joined(unit, beyond), {tip}},
+      {"along an edge", joined(unit, box(Vec3(1, 1, 0), Vec3(2, 2, 1))), {Vec3(1, 1, 0.3), Vec3(1, 1, 1)}},
+      {"boxes of other shapes", joined(unit, box(Vec3(1, 1, 1), Vec3(1.3, 1.5, 1.7))), {tip}},
+      {"notched pyramid", notched_pyramid(), {Vec3(0, 0, 0)}},
+  };
+  for (const auto& [name, cage, points] : cages)
+    for (const double scale : {1.0, 1e-8})
+      for (const double turn : {0.0, 0.3}) {
+        const Mat3 placed = scale * Eigen::AngleAxisd(turn, Vec3(3, -1, 2).normalized()).matrix();
+        const Mat3 rotation = Eigen::AngleAxisd(1, Vec3(0, 0, 1)).matrix();
+        Cage at = cage;
+        for (Vec3& v : at.vertices) v = placed * v;
+        std::vector<Vec3> moved;
+        for (const Vec3& v : at.vertices) moved.push_back(rotation * v);
+        // At the point, and within rounding of it.
+        std::vector<Vec3> places;
+        for (const Vec3& p : points)
+          for (const double off : {0.0, 1e-16, -1e-16}) places.push_back(placed * (p + Vec3(off, 2 * off, -off)));
+        for (const CageCoordinates kind : {CageCoordinates::mean_value, CageCoordinates::green}) {
+          const DeformedPoints result = deform_points(*coordinates_of(at, kind, 0), at, moved, places, true);
+          for (std::size_t k = 0; k < places.size(); ++k) {
+            EXPECT_EQ(result.outside[k], 0) << name;
+            EXPECT_LE((result.jacobians[k] - rotation).norm(), 1e-9)
+                << name << ", point " << k << ", scale " << scale << ", turned by " << turn << ", "
+                << static_cast<int>(kind) << '\n'
+                << result.jacobians[k];
+          }
+        }
+      }
 }
 
 }  // namespace
