@@ -1,5 +1,6 @@
 """Files: opening, saving, exporting, recovering, and file dialogs."""
 
+import fcntl
 import json
 import os
 import shutil
@@ -56,6 +57,38 @@ class FileTest(WindowCase):
         editor.move(x, y)
         editor.tool("click", 1)
         self.assertEqual(editor.process.wait(20), 0)
+
+    def test_edits_during_the_save_before_closing_are_asked_about(self):
+        editor = self.open(KETTLE)
+        editor.until_ops("import")
+        folder = self.folder / "slow"
+        folder.mkdir()
+        project = folder / "kettle.rebake"
+        editor.key("ctrl+a", "ctrl+s")
+        editor.answer(str(project))
+        until(project.is_file, "the project")
+        editor.settle()
+        editor.key("ctrl+i")
+        # A save waits for other programs that save there.
+        other = os.open(folder, os.O_RDONLY)
+        fcntl.flock(other, fcntl.LOCK_EX)
+        editor.key("ctrl+q")
+        x, y = editor.where("dialog/save")
+        editor.move(x, y)
+        editor.tool("click", 1)
+        time.sleep(0.5)
+        for _ in range(3):
+            editor.tool("key", "ctrl+i")
+        time.sleep(0.3)
+        os.close(other)
+        until(lambda: editor.state()["asks"] and editor.state()["items"].get("dialog/save"), "the question")
+        self.assertIsNone(editor.process.poll())
+        self.assertEqual(editor.ops(), ["import", "select", "select", "select", "select", "select"])
+        x, y = editor.where("dialog/save")
+        editor.move(x, y)
+        editor.tool("click", 1)
+        self.assertEqual(editor.process.wait(20), 0)
+        self.assertEqual(len(json.loads(project.read_text())["edits"]), 6)
 
     def test_a_project_of_which_everything_was_deleted_is_saved(self):
         project = self.folder / "empty.rebake"

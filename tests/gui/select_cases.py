@@ -161,6 +161,24 @@ class SelectTest(WindowCase):
         self.assertFalse(editor.last_edit()["contiguous"])
         self.assertGreater(editor.state()["selected"], 2 * touching)
 
+    def test_flood_replaces_the_selection_of_the_whole_scope(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        editor.key("Escape", "Escape", "ctrl+a", "o")
+        both = editor.state()["selected"]
+        editor.click(*editor.in_viewport(0.45, 0.5))
+        taken = editor.state()["selected"]
+        self.assertLess(taken, both / 2)
+        node = editor.last_edit()["node"]
+        editor.key("Delete")
+        self.assertIn(f"Deleted {taken} triangles of ", editor.state()["status"])
+        self.assertNotIn(" and ", editor.state()["status"], "one node")
+        # It was one step, and the keys add.
+        editor.key("ctrl+z", "ctrl+z")
+        self.assertEqual(editor.state()["selected"], both)
+        editor.click(*editor.in_viewport(0.45, 0.5), held="shift")
+        self.assertEqual((editor.state()["selected"], editor.last_edit()["node"]), (both, node))
+
     def test_a_box_and_a_ball_select_what_they_hold(self):
         editor = self.open_ficus()
         editor.key("u")

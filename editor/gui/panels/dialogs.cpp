@@ -135,20 +135,23 @@ void Dialogs::draw_discarding(Project& project) {
 }
 
 void Dialogs::draw_quitting(EditorContext& editor) {
-  if (!editor.project.unsaved() && !editor.jobs.worker.busy() && !editor.jobs.film) {
+  const bool busy = editor.jobs.worker.busy() || editor.jobs.film;
+  // Edits that ended in this frame are seen in the next one.
+  if (!busy && editor.now != editor.jobs.worker.snapshot()) return;
+  if (!editor.project.unsaved() && !busy) {
     may_quit_ = true;
     return;
   }
   if (!begin_question("Save the changes before closing?")) return;
   const announce::Part part("dialog");
-  const bool busy = editor.jobs.worker.busy() || editor.jobs.film;
   say(busy ? "A job is still running."
            : "Unsaved changes will be lost" + (editor.project.path.empty()
                                                    ? std::string(".")
                                                    : " from " + editor.project.path.filename().string() + "."));
   answers_right(3);
   ImGui::BeginDisabled(busy);
-  const auto quit = [this] { may_quit_ = true; };
+  // Asks again if anything has been edited during the save.
+  const auto quit = [&editor] { editor.dialogs.quitting = true; };
   if (ui::primary_button(editor.project.path.empty() ? "Save...##save" : "Save##save", answer_size())) {
     editor.dialogs.quitting = false;
     editor.project.after_save = quit;
@@ -177,7 +180,8 @@ void Dialogs::draw_replacing(EditorContext& editor) {
   bool done = false;
   answers_right(3);
   if (ui::primary_button(project.path.empty() ? "Save...##save" : "Save##save", answer_size())) {
-    project.after_save = [&project, paths = project.to_open] { project.open(paths, true); };
+    // Asks again if anything has been edited during the save.
+    project.after_save = [&project, paths = project.to_open] { project.open(paths); };
     if (project.path.empty())
       editor.dialogs.path = FileDialogPurpose::save_project;
     else

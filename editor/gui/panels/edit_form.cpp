@@ -6,6 +6,7 @@
 
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/scene_change.h"
+#include "editor/edits/select/selecting.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/fields/field_info.h"
@@ -32,15 +33,17 @@ const FieldInfo* field_named(const std::vector<FieldInfo>& fields, const char* n
 
 // Number of selected triangles in a scene or its preview: in the nodes of the scope, or in `only` and its descendants.
 std::size_t selected_in(const DocumentEditor& editor, const Scene& scene, NodeId only) {
-  const auto counts = [&](const PlacedNode& placed) {
-    if (only == NodeId::none) return editor.in_scope(scene, placed);
-    NodeId at = placed.node->id;
-    while (at != NodeId::none && at != only) at = parent_of(scene, at);
-    return at == only && placed.visible && !placed.locked;
-  };
   std::size_t triangles = 0;
+  const auto add = [&](const PlacedNode& placed) {
+    if (placed.node->selection) triangles += count(*placed.node->selection);
+  };
+  if (only != NodeId::none) {
+    // As edits with a named node: also a hidden one.
+    for (const PlacedNode& placed : selectable(scene, NodeRef{only})) add(placed);
+    return triangles;
+  }
   for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->selection && counts(placed)) triangles += count(*placed.node->selection);
+    if (editor.in_scope(scene, placed)) add(placed);
   return triangles;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <set>
 
+#include "editor/edits/select/select.h"
 #include "editor/edits/select/select_like.h"
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/widgets.h"
@@ -26,7 +27,18 @@ void take(ToolContext& editor, const std::optional<PickHit>& picked, const Point
     like.color = editor.settings.likeness;
     like.contiguous = !editor.settings.flood_everywhere;
     like.mode = select_mode(pointer);
-    editor.edit(like);
+    std::vector<Edit> edits;
+    // Without Shift, as with the other tools, the selections of all nodes in the scope are replaced.
+    if (like.mode == SelectMode::set)
+      for (const NodeId other : editor.nodes_in_scope(true)) {
+        if (other == picked->node) continue;
+        Select none;
+        none.node = NodeRef{other};
+        none.none = true;
+        edits.emplace_back(none);
+      }
+    edits.emplace_back(like);
+    editor.edits(edits);
     return;
   }
   if (!pointer.shift && !pointer.control) editor.active.clear();

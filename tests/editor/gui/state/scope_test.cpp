@@ -10,9 +10,11 @@
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/hide.h"
 #include "editor/edits/nodes/lock.h"
+#include "editor/edits/scene_change.h"
 #include "editor/edits/select/select_triangles.h"
 #include "editor/gui/state/commands.h"
 #include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/formats.h"
 #include "tests/support/window_state.h"
 
 namespace rebake::test {
@@ -54,6 +56,12 @@ class Scope : public WindowState {
                                   placed.to_world.matrix()};
     return state;
   }
+  std::size_t triangles() const {
+    std::size_t count = 0;
+    for (const PlacedNode& placed : placed_nodes(editor->scene()))
+      if (placed.node->object) count += placed.node->object->triangle_count();
+    return count;
+  }
   std::vector<NodeId> nodes;
   std::mt19937 random{11};
 };
@@ -67,7 +75,10 @@ TEST_F(Scope, CommandsChangeNothingOutside) {
       {"Shrink", [&] { command_named("Shrink").run(*editor); }},
       {"Connected", [&] { command_named("Connected").run(*editor); }},
       {"Separate", [&] { command_named("Separate").run(*editor); }},
+      {"Delete", [&] { command_named("Delete").run(*editor); }},
+      {"Delete and fill holes", [&] { command_named("Delete and fill holes").run(*editor); }},
   };
+  editor->tools.kind = ToolKind::rectangle;  // with it, Delete removes no nodes
   int changed = 0, refused = 0;
   for (int trial = 0; trial < 24; ++trial) {
     const std::size_t start = editor->now->steps_done;
@@ -101,10 +112,14 @@ TEST_F(Scope, CommandsChangeNothingOutside) {
     const State before = state_of(editor->scene());
     for (const auto& [name, run] : commands) {
       editor->active = picked;
-      const std::size_t steps = editor->now->steps_done;
+      const std::size_t steps = editor->now->steps_done, triangles_before = triangles();
       editor->status.clear();
       run();
       wait();
+      if (name == "Delete" && editor->now->steps_done > steps) {
+        const std::string title = editor->now->steps.at(steps).title;
+        EXPECT_TRUE(title.starts_with("Deleted " + triangles_text(triangles_before - triangles()) + " of ")) << title;
+      }
       const State after = state_of(editor->scene());
       for (const NodeId id : nodes) {
         if (inside.contains(id)) continue;
@@ -150,6 +165,30 @@ TEST_F(Scope, OneEditNamesOneNodeOrEverything) {
   editor->active = {nodes[0]};
   EXPECT_FALSE(editor->one_deform_target());
   EXPECT_NE(editor->messages.log().back().text.find("no visible, unlocked object"), std::string::npos);
+}
+
+// Rebake reads scenes in which an object has objects below it. An edit of the upper one acts on both.
+TEST_F(Scope, ObjectsBelowPickedObjectsAreEditedOnce) {
+  Scene nested;
+  Node upper, lower;
+  upper.name = "upper";
+  upper.object = made_object({.columns = 4, .rows = 3});
+  lower.name = "lower";
+  lower.object = upper.object;
+  upper.children.push_back(std::make_shared<const Node>(lower));
+  nested = with_added(nested, upper, NodeId::none, 0);
+  format_named("rebake").write(nested, home.path() / "nested", {}, {});
+  editor->project.open({(home.path() / "nested").string()});
+  wait();
+  const NodeId top = editor->scene().roots.back()->id;
+  ASSERT_EQ(editor->scene().roots.back()->children.size(), 1U);
+  editor->active = {top};
+  command_named("Invert").run(*editor);
+  wait();
+  EXPECT_EQ(editor->selected_triangles(), 2 * upper.object->triangle_count());
+  editor->active = {editor->scene().roots.back()->children.front()->id};
+  EXPECT_EQ(editor->nodes_in_scope().size(), 1U);
+  EXPECT_EQ(editor->selected_triangles(), upper.object->triangle_count());
 }
 
 }  // namespace
