@@ -20,6 +20,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/motion/scene_at.h"
 
 namespace rebake {
@@ -208,13 +209,13 @@ class Film {
 std::vector<fs::path> FilmAction::input_files(const nlohmann::json& object) {
   const auto path = object.find("path");
   if (path == object.end() || !path->is_string() || !is_camera_file(path->get<std::string>())) return {};
-  return camera_format_for(path->get<std::string>(), "").files(path->get<std::string>());
+  return files_with_cameras(path->get<std::string>(), "");
 }
 
 void run(Session& session, const FilmAction& action) {
   check_fields(action);
   for (const fs::path& file : FilmAction::input_files({{"path", action.path}}))
-    session.document.protect_file(file, "a camera file of this run");
+    session.document.protect_file(file, "a file of the cameras of this run");
   Film(session, action).run();
 }
 

@@ -169,7 +169,8 @@ void run(Session& session, const TrainAction& action, const TrainingObserver& ob
   check_report_is_ours(out / report_name);
   Capture capture = read_capture(options.source, options.held_out, Scene{}.background, session.progress);
   for (const std::string& note : capture.notes) session.say(note);
-  TrainingRun training(options, std::move(capture), Scene{}.background, work, session.say, session.progress);
+  TrainingRun training(options, std::move(capture), Scene{}.background, work, sources_of(session, observer),
+                       session.say, session.progress);
   session.say(fmt::format("progress: a picture and a table in {}", work.string()));
   training.enough = observer.enough;
   training.goes_on_unsaved = observer.goes_on_unsaved;

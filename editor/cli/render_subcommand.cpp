@@ -164,11 +164,11 @@ void render_photographs(const Rendering& options) {
   for (const std::string& note : notes) write_stderr(fmt::format("warning: {}: {}\n", options.cameras, note));
   for (const std::filesystem::path& file : camera_format_for(options.cameras, format).files(options.cameras))
     sources.add_file(file, "a camera file of this run");
-  // Photographs may be rendered themselves. Other pictures of their names may be those of an earlier run.
-  for (const std::filesystem::path& file : named_photographs(options.cameras, cameras))
-    sources.add_file(file, "a photograph of the capture");
-  for (const std::filesystem::path& file : captured_files_at(options.out, named_photographs))
-    sources.add_file(file, "a photograph of the capture there");
+  // Photographs and masks may be rendered themselves. Other pictures of their names may be those of an earlier run.
+  for (const std::filesystem::path& file : named_files(options.cameras, cameras))
+    sources.add_file(file, "a file of the capture");
+  for (const std::filesystem::path& file : captured_files_at(options.out, named_files))
+    sources.add_file(file, "a file of the capture there");
   for (const std::filesystem::path& file : capture_files(options.cameras, cameras))
     if (!is_rendered_picture(file)) sources.add_file(file, "a file of the capture");
   for (const std::filesystem::path& file : captured_files_at(options.out))

@@ -9,6 +9,7 @@
 #include "editor/document/project.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/formats/formats.h"
 #include "render/image.h"
@@ -62,9 +63,7 @@ void refuse_replacing_film(const fs::path& path) {
     throw FileError(path, "would be a picture of the film in its folder (film.json); name another folder");
 }
 
-}  // namespace
-
-void refuse_replacing_work(const fs::path& path) {
+void refuse_replacing_work_at(const fs::path& path) {
   Journal::refuse_overwriting(path);
   refuse_replacing_film(path);
   if (is_project_file(path) ? holds_project(path) : is_project_by_another_name(path))
@@ -78,6 +77,14 @@ void refuse_replacing_work(const fs::path& path) {
         throw FileError(path, "is a file of the scene in its folder; name another file");
   // Rendered ones may be rendered again: a script may export cameras for its own pictures.
   if (!is_rendered_picture(path)) refuse_replacing_photographs(path, folder);
+}
+
+}  // namespace
+
+void refuse_replacing_work(const fs::path& path) {
+  refuse_replacing_work_at(path);
+  // What a link leads to is replaced, not the link.
+  if (const fs::path target = plain_path(path); target != path) refuse_replacing_work_at(target);
 }
 
 void refuse_replacing_foreign(const fs::path& path) {

@@ -96,14 +96,9 @@ Capture read_capture(const PhotographSource& source, const HeldOut& held_out, co
 }
 
 std::vector<fs::path> files_of_capture(const PhotographSource& source, const HeldOut& held_out) {
-  std::vector<fs::path> files;
-  const auto add = [&](const PhotographSource& from) {
-    std::vector<std::string> notes;
-    for (fs::path& file : camera_format_for(from.path, from.format).files(from.path)) files.push_back(std::move(file));
-    for (fs::path& file : capture_files(from.path, read_cameras(from, notes))) files.push_back(std::move(file));
-  };
-  add(source);
-  if (const auto other = held_out_source(source, held_out)) add(*other);
+  std::vector<fs::path> files = files_with_cameras(source.path, source.format);
+  if (const auto other = held_out_source(source, held_out))
+    for (fs::path& file : files_with_cameras(other->path, other->format)) files.push_back(std::move(file));
   return files;
 }
 

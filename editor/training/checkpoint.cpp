@@ -1,5 +1,7 @@
 #include "editor/training/checkpoint.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
@@ -46,6 +48,10 @@ std::optional<std::string> read_checkpoint(const fs::path& file, nlohmann::json&
     throw damaged("is damaged");
   head = line["head"];
   return bytes;
+}
+
+bool is_checkpoint(const fs::path& file) {
+  return read_file(file).starts_with(fmt::format("{{\"checkpoint\":\"{}\"", mark));
 }
 
 }  // namespace rebake

@@ -16,4 +16,7 @@ void write_checkpoint(const std::filesystem::path& file, const nlohmann::json& h
 /// one.
 std::optional<std::string> read_checkpoint(const std::filesystem::path& file, nlohmann::json& head);
 
+/// Whether a file is a checkpoint by how it begins.
+bool is_checkpoint(const std::filesystem::path& file);
+
 }  // namespace rebake

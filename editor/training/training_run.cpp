@@ -12,6 +12,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "render/contact_sheet.h"
+#include "render/image.h"
 
 namespace rebake {
 
@@ -22,16 +23,23 @@ namespace {
 constexpr double seconds_between_checkpoints = 60;
 constexpr const char *checkpoint_name = "rebake-checkpoint", *preview_name = "rebake-preview.png",
                      *table_name = "rebake-progress.csv", *lock_name = "rebake-lock";
+constexpr const char* table_header = "steps,seconds,PSNR of training pixels dB\n";
 constexpr int preview_side = 96;  // pixels at most: it must take less than a second
 
-// Whether an entry of a work folder is a file that a training made there: by its name, and no link to another file.
+// Whether an entry of a work folder is a file that a training made there: by its name and how it begins, and no link to
+// another file.
 bool is_own(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
   std::error_code error;
   if (entry.is_symlink(error) || (entry.is_regular_file(error) && entry.hard_link_count(error) > 1)) return false;
   const char* const own[] = {checkpoint_name, preview_name, table_name, lock_name};
-  return std::any_of(std::begin(own), std::end(own),
-                     [&](const char* one) { return name == one || is_partial_of(name, one); });
+  if (std::none_of(std::begin(own), std::end(own),
+                   [&](const char* one) { return name == one || is_partial_of(name, one); }))
+    return false;
+  if (!entry.is_regular_file(error)) return true;
+  if (name == preview_name) return is_rendered_picture(entry.path());
+  if (name == table_name) return read_file(entry.path()).starts_with(table_header);
+  return name != checkpoint_name || is_checkpoint(entry.path());
 }
 
 double psnr_of(double mean_squared_error) { return -10 * std::log10(std::max(mean_squared_error, 1e-10)); }
@@ -62,7 +70,7 @@ const char* name_of(TrainingStage stage) {
 }  // namespace
 
 TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, const Vec3& background, fs::path work,
-                         Say say, const Progress& progress)
+                         const SourceGuard& sources, Say say, const Progress& progress)
     : options_(options), capture_(std::move(capture)), work_(std::move(work)), say_(std::move(say)) {
   check(options_);
   side_ = options_.side.value_or(side_for(capture_.training));
@@ -81,7 +89,7 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
   plan.layers = options_.layers;
   if (plan.gains && !frame_.gains.empty())
     say_("exposures: the backgrounds of the photographs differ in brightness, so each photograph has a gain");
-  open_work_folder();
+  open_work_folder(sources);
   nlohmann::json head;
   std::optional<std::string> state;
   if (!options_.fresh) state = read_checkpoint(work_ / checkpoint_name, head);
@@ -114,8 +122,10 @@ TrainingRun::TrainingRun(const ReconstructionOptions& options, Capture capture, 
   }
 }
 
-// Creates and locks the folder for checkpoints. Other files in it stay safe.
-void TrainingRun::open_work_folder() {
+// Creates and locks the folder for checkpoints. Other files in it stay safe, as do sources of the run and files of the
+// same names that another program made.
+void TrainingRun::open_work_folder(const SourceGuard& sources) {
+  for (const char* name : {checkpoint_name, preview_name, table_name, lock_name}) sources.check_file(work_ / name);
   std::error_code error;
   fs::create_directories(work_, error);
   if (error) throw FileError(work_, "cannot be created: " + error.message());
@@ -179,7 +189,7 @@ bool TrainingRun::write_state() {
 // A row of the table, and a picture of the scene beside a photograph.
 void TrainingRun::show_progress(double mean_error, const Progress& progress) {
   rows_.push_back({static_cast<double>(reconstruction_->steps_done()), seconds(), psnr_of(mean_error)});
-  std::string table = "steps,seconds,PSNR of training pixels dB\n";
+  std::string table = table_header;
   for (const auto& [steps, seconds, psnr] : rows_) table += fmt::format("{:.0f},{:.1f},{:.3f}\n", steps, seconds, psnr);
   const FitPhotograph photograph = reduced(reconstruction_->views().photographs().front(), preview_side);
   const Image wanted{photograph.width, photograph.height, photograph.rgb, {}};

@@ -6,6 +6,7 @@
 
 #include "editor/training/reconstruction_options.h"
 #include "mesh_ops/base/file_lock.h"
+#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/reconstruction/bake_reconstruction.h"
 #include "mesh_ops/reconstruction/capture_frame.h"
 #include "mesh_ops/reconstruction/reconstruction.h"
@@ -19,9 +20,10 @@ class TrainingRun {
   using Say = std::function<void(const std::string&)>;
 
   /// Plans the training, or reads its checkpoint. `work`: folder for the checkpoint, a preview and a table of the
-  /// progress; created. Throws FieldError, FileError, Error for captures that cannot be trained on, and Cancelled.
+  /// progress; created. `sources`: files that none of them may be. Throws FieldError, FileError, Error for captures
+  /// that cannot be trained on, and Cancelled.
   TrainingRun(const ReconstructionOptions& options, Capture capture, const Vec3& background, std::filesystem::path work,
-              Say say, const Progress& progress);
+              const SourceGuard& sources, Say say, const Progress& progress);
 
   /// Trains to the end, or until enough(). If it is cancelled, writes a checkpoint and throws Cancelled.
   void train(const Progress& progress);
@@ -48,7 +50,7 @@ class TrainingRun {
 
  private:
   void plan_steps(TrainingPlan& plan, const Progress& progress);
-  void open_work_folder();
+  void open_work_folder(const SourceGuard& sources);
   /// State of train().
   struct Loop {
     double work_before = 0;       ///< work of the steps before this call

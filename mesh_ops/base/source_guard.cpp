@@ -13,12 +13,6 @@ namespace rebake {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-// Number of entries after which the search for links and protected files stops; no scene has more.
-constexpr std::size_t max_entries = 20000;
-
-// Canonical path without a trailing slash; components that do not exist yet stay as named.
 fs::path plain_path(const fs::path& path) {
   std::error_code error;
   fs::path named = fs::absolute(path);
@@ -30,6 +24,11 @@ fs::path plain_path(const fs::path& path) {
   if (error) result = named.lexically_normal();
   return result.has_filename() ? result : result.parent_path();
 }
+
+namespace {
+
+// Number of entries after which the search for links and protected files stops; no scene has more.
+constexpr std::size_t max_entries = 20000;
 
 bool lies_in(const fs::path& path, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();

@@ -9,6 +9,10 @@
 
 namespace rebake {
 
+/// The path that writing to `path` creates or replaces: canonical, without a trailing slash, through links, also those
+/// to files that do not exist yet. Components that do not exist stay as named.
+std::filesystem::path plain_path(const std::filesystem::path& path);
+
 /// Files and folders that no output may overwrite, because this run reads them and undo, journals and projects read
 /// them again. Existing paths are compared by device and inode, so that links, hard links, bind mounts and
 /// case-insensitive file systems are recognised; paths that do not exist yet are compared by name.

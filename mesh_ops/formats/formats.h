@@ -39,7 +39,8 @@ struct Format {
   struct Folder {
     /// Whether the files have the content of the format, not only the names.
     bool (*is_genuine)(const std::filesystem::path& folder);
-    bool (*is_own_file)(const std::string& name);  ///< whether a file of this name belongs to the format
+    /// Whether this file in a folder of the format belongs to it.
+    bool (*is_own_file)(const std::filesystem::path& file);
     std::set<std::string> (*own_folders)(const std::filesystem::path& folder);  ///< names of the folders in it
   };
   const Folder* folder;

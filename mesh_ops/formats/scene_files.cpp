@@ -104,9 +104,9 @@ void refuse_foreign_content(const fs::path& folder) {
     if (!genuine) refuse(folder / marker);
   const bool known = !markers.empty();
   // At the top, only files of the formats whose markers are there.
-  const auto is_own_file = [&](const std::string& name, bool top) {
+  const auto is_own_file = [&](const fs::path& file, bool top) {
     return std::ranges::any_of(formats(), [&](const Format& format) {
-      return format.folder != nullptr && format.folder->is_own_file(name) && (!top || markers.contains(format.marker));
+      return format.folder != nullptr && format.folder->is_own_file(file) && (!top || markers.contains(format.marker));
     });
   };
   if (!known && !fs::is_empty(folder)) refuse(fs::directory_iterator(folder)->path());
@@ -115,7 +115,7 @@ void refuse_foreign_content(const fs::path& folder) {
        it.increment(error)) {
     const std::string name = it->path().filename().string();
     if (it->is_symlink()) refuse(it->path());
-    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_own_file(name, it.depth() == 0))
+    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_own_file(it->path(), it.depth() == 0))
       refuse(it->path());
   }
   if (error) throw FileError(folder, "cannot be read: " + error.message());

@@ -25,13 +25,7 @@ void ImportViews::set_input(const EditSource& source) {
   content = source.content;
 }
 
-std::vector<std::filesystem::path> ImportViews::input_files() const {
-  std::vector<std::filesystem::path> files = camera_format_for(path, format.name).files(path);
-  std::vector<std::string> notes;
-  for (std::filesystem::path& file : capture_files(path, read_cameras(path, format.name, world, notes)))
-    files.push_back(std::move(file));
-  return files;
-}
+std::vector<std::filesystem::path> ImportViews::input_files() const { return files_with_cameras(path, format.name); }
 
 Outcome apply(const Scene& scene, const ImportViews& edit) {
   if (edit.path.empty()) throw FieldError("path", "is empty");

@@ -147,11 +147,9 @@ void SelectMasks::set_input(const EditSource& source) {
 }
 
 std::vector<fs::path> SelectMasks::input_files() const {
-  std::vector<fs::path> files = camera_format_for(path, format.name).files(path);
+  std::vector<fs::path> files = files_with_cameras(path, format.name);
   std::vector<std::string> notes;
-  const Photographs found = photographs_of(*this, notes);
-  for (fs::path& mask : files_of(found)) files.push_back(std::move(mask));
-  for (fs::path& file : capture_files(path, found.cameras)) files.push_back(std::move(file));
+  for (fs::path& mask : files_of(photographs_of(*this, notes))) files.push_back(std::move(mask));
   return files;
 }
 

@@ -32,16 +32,6 @@ std::vector<PhotoCamera> cameras_of(const Refit& edit, std::vector<std::string>&
   return read_cameras(source_of(edit), notes);
 }
 
-// The photographs that exist, with the masks that their cameras name.
-std::vector<fs::path> files_of(const Refit& edit, const std::vector<PhotoCamera>& cameras) {
-  std::vector<fs::path> files = named_photographs(edit.path, cameras);
-  const fs::path folder = capture_folder(edit.path);
-  for (const PhotoCamera& camera : cameras)
-    if (std::error_code error; !camera.mask.empty() && fs::is_regular_file(folder / camera.mask, error))
-      files.push_back(folder / camera.mask);
-  return files;
-}
-
 std::string hash_of(const std::vector<fs::path>& files) {
   std::string all;
   for (const fs::path& file : files)
@@ -105,15 +95,10 @@ void Refit::set_input(const EditSource& source) {
   content = source.content;
   if (!photographs.empty()) return;
   std::vector<std::string> notes;
-  photographs = hash_of(files_of(*this, cameras_of(*this, notes)));
+  photographs = hash_of(named_files(path, cameras_of(*this, notes)));
 }
 
-std::vector<fs::path> Refit::input_files() const {
-  std::vector<fs::path> files = camera_format_for(path, format.name).files(path);
-  std::vector<std::string> notes;
-  for (fs::path& file : files_of(*this, cameras_of(*this, notes))) files.push_back(std::move(file));
-  return files;
-}
+std::vector<fs::path> Refit::input_files() const { return files_with_cameras(path, format.name); }
 
 Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
   if (edit.path.empty()) throw FieldError("path", "is empty");
@@ -123,7 +108,7 @@ Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
   const std::vector<PhotoCamera> cameras = cameras_of(edit, report.lines);
   for (std::string& line : report.lines) line = fmt::format("warning: {}: {}", edit.path, line);
   if ((!edit.content.empty() && hash_text(content_hash_at(edit.path)) != edit.content) ||
-      (!edit.photographs.empty() && hash_of(files_of(edit, cameras)) != edit.photographs))
+      (!edit.photographs.empty() && hash_of(named_files(edit.path, cameras)) != edit.photographs))
     throw EditError(edit.path +
                     ": cameras or photographs have changed since they were used; restore the original files");
   const std::vector<FitTarget> targets = targets_of(scene, edit);

@@ -72,11 +72,22 @@ std::vector<fs::path> capture_files(const fs::path& camera_file, const std::vect
   return files;
 }
 
-std::vector<fs::path> named_photographs(const fs::path& camera_file, const std::vector<PhotoCamera>& cameras) {
+std::vector<fs::path> named_files(const fs::path& camera_file, const std::vector<PhotoCamera>& cameras) {
+  const fs::path folder = capture_folder(camera_file);
   std::vector<fs::path> files;
   for (const PhotoCamera& camera : cameras)
-    if (fs::path file = photograph_at(capture_folder(camera_file), camera.name); !file.empty())
-      files.push_back(std::move(file));
+    if (fs::path file = photograph_at(folder, camera.name); !file.empty()) files.push_back(std::move(file));
+  for (const PhotoCamera& camera : cameras)
+    if (std::error_code error; !camera.mask.empty() && fs::is_regular_file(folder / camera.mask, error))
+      files.push_back(folder / camera.mask);
+  return files;
+}
+
+std::vector<fs::path> files_with_cameras(const fs::path& camera_file, const std::string& format) {
+  std::vector<std::string> notes;
+  std::vector<fs::path> files = camera_format_for(camera_file, format).files(camera_file);
+  for (fs::path& file : capture_files(camera_file, read_cameras(camera_file, format, {}, notes)))
+    files.push_back(std::move(file));
   return files;
 }
 

@@ -43,6 +43,14 @@ bool is_baked_file_name(const std::string& name) {
   return skip_digits(rest) > 0 && rest == ".obj";
 }
 
+bool is_baked_file(const fs::path& file) {
+  const std::string name = file.filename().string();
+  if (!is_baked_file_name(name)) return false;
+  if (!name.starts_with("shape")) return true;
+  const std::vector<fs::path> read = baked_files(file.parent_path());
+  return std::ranges::find(read, fs::path(name)) != read.end();
+}
+
 bool has_baked_decoder(const fs::path& folder) {
   const json mlp = json::parse(without_trailing_commas(read_file(folder / "mlp.json")).text, nullptr, false);
   return mlp.is_object() && mlp.contains("0_weights");

@@ -62,7 +62,9 @@ bool is_nerf2mesh_folder(const fs::path& folder) {
 
 bool has_nerf2mesh_decoder(const fs::path& folder) { return is_nerf2mesh_mlp(read_file(folder / "mlp.json")); }
 
-bool is_nerf2mesh_file_name(const std::string& name) {
+namespace {
+
+bool is_file_name(const std::string& name) {
   if (name == "mlp.json") return true;
   for (const auto& [prefix, endings] :
        {std::pair<std::string_view, std::vector<std::string_view>>{"mesh_", {".obj", ".mtl"}},
@@ -76,6 +78,16 @@ bool is_nerf2mesh_file_name(const std::string& name) {
     return digits > 0 && std::ranges::find(endings, rest) != endings.end();
   }
   return false;
+}
+
+}  // namespace
+
+bool is_nerf2mesh_file(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  if (!is_file_name(file.filename().string()) || !fs::exists(folder / "mlp.json") || !has_nerf2mesh_decoder(folder))
+    return false;
+  const std::vector<fs::path> read = nerf2mesh_files(folder);
+  return std::ranges::find(read, file.filename()) != read.end();
 }
 
 std::vector<fs::path> nerf2mesh_files(const fs::path& folder) {

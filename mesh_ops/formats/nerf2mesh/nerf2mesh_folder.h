@@ -23,8 +23,8 @@ Affine nerf2mesh_to_y_up();
 bool is_nerf2mesh_folder(const std::filesystem::path& folder);
 /// Whether its mlp.json is that of nerf2mesh.
 bool has_nerf2mesh_decoder(const std::filesystem::path& folder);
-/// Whether a file name belongs to these folders.
-bool is_nerf2mesh_file_name(const std::string& name);
+/// Whether a file is read with the scene of its folder.
+bool is_nerf2mesh_file(const std::filesystem::path& file);
 /// The files that read_nerf2mesh_folder() reads, relative to the folder.
 std::vector<std::filesystem::path> nerf2mesh_files(const std::filesystem::path& folder);
 

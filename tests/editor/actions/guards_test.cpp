@@ -254,6 +254,87 @@ TEST_F(Guards, PicturesThatMaterialsNameAreProtectedEvenIfNotRead) {
   }
 }
 
+// A link among another folder's files replaces what it leads to.
+TEST_F(Guards, LinksToFilesOfOthersAreNotWrittenThrough) {
+  fs::create_directories(path("cap/images"));
+  fs::create_directories(path("film"));
+  fs::create_directories(path("links"));
+  write("cap/transforms.json", R"({"camera_angle_x": 0.7, "w": 16, "h": 16, "frames": [{"file_path": "images/0.png",
+            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
+  write("cap/images/0.png", "\x89PNG of somebody");
+  write("film/film.json", "{}");
+  write("film/00001.png", "\x89PNG of somebody");
+  fs::copy(REBAKE_SOURCE "/samples/scenes/kettle", path("other"));
+  const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";
+  fs::create_directory_symlink(path("links"), path("more"));
+  const auto before = folder_bytes(path(""));
+  for (const std::string target :
+       {"cap/images/0.png", "cap/images/new.png", "film/00001.png", "other/shape0.pngfeat0.png"})
+    for (const std::string link : {"links/a.png", "links/b.png", "more/a.png"}) {
+      fs::create_symlink("../" + target, path("links/a.png"));
+      fs::create_symlink("a.png", path("links/b.png"));
+      EXPECT_EQ(program("render " + kettle + " -o {}/" + link + " --size 8x8"), target == "cap/images/new.png" ? 0 : 1)
+          << target << ", " << link << '\n'
+          << log();
+      fs::remove(path("links/a.png"));
+      fs::remove(path("links/b.png"));
+      fs::remove(path("cap/images/new.png"));
+      fs::remove(path("log"));
+      EXPECT_EQ(folder_bytes(path("")), before) << target << ", " << link;
+    }
+}
+
+// Every command that reads cameras protects the photographs and masks that they name, wherever they are.
+TEST_F(Guards, AllThatReadsCamerasProtectsTheirPhotographsAndMasks) {
+  fs::create_directories(path("store/images"));
+  fs::create_directories(path("store/masks"));
+  fs::create_directories(path("cap"));
+  const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";
+  ASSERT_EQ(program("render " + kettle + " -o {}/drawn.png --size 16x16"), 0) << log();
+  for (const char* kind : {"images", "masks"}) {
+    fs::create_directory_symlink(path(std::string("store/") + kind), path(std::string("cap/") + kind));
+    fs::copy_file(path("drawn.png"), path(fmt::format("store/{}/0.png", kind)));
+  }
+  write("cap/transforms.json", R"({"camera_angle_x": 0.7, "w": 16, "h": 16, "frames": [{"file_path": "images/0.png",
+            "mask_path": "masks/0.png", "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
+  const std::string photograph = read_file(path("store/images/0.png"));
+  for (const std::string line :
+       {R"({"op": "compare_photographs", "cameras": "CAP", "samples": 1})",
+        R"({"op": "film", "path": "CAP", "out": "FILM", "width": 8, "height": 8, "samples": 1, "fps": 1})",
+        R"({"op": "import_views", "path": "CAP"})", R"({"op": "refit", "path": "CAP", "epochs": 1})",
+        R"({"op": "select_masks", "path": "CAP"})"})
+    for (const std::string kind : {"images", "masks"})
+      for (const bool after : {true, false}) {
+        std::string reads = line;
+        for (const auto& [word, name] : {std::pair("CAP", "cap/transforms.json"), std::pair("FILM", "film")})
+          if (const std::size_t at = reads.find(word); at != std::string::npos)
+            reads.replace(at, 3 + (*word == 'F'), path(name).string());
+        const std::string writes =
+            fmt::format(R"({{"op": "render", "out": "{}", "width": 8, "height": 8, "samples": 1}})",
+                        path("store/" + kind + "/0.png").string());
+        write("s.jsonl", import_line() + (after ? reads + "\n" + writes : writes + "\n" + reads));
+        EXPECT_EQ(program("run {}/s.jsonl"), 1) << line << ", " << kind << '\n' << log();
+        EXPECT_EQ(read_file(path("store/" + kind + "/0.png")), photograph) << line << ", " << kind;
+        fs::remove_all(path("film"));
+      }
+  EXPECT_EQ(program("render " + kettle + " --cameras {}/cap/transforms.json -o {}/cap/masks"), 1) << log();
+  EXPECT_EQ(program("compare " + kettle + " --photos {}/cap/transforms.json -o {}/cap/masks --samples 1"), 1) << log();
+  EXPECT_EQ(read_file(path("store/masks/0.png")), photograph);
+}
+
+TEST_F(Guards, ExportsReplaceNoFilesThatOnlyHaveNamesOfTheScene) {
+  const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";
+  ASSERT_EQ(program("export " + kettle + " -o {}/out"), 0) << log();
+  for (const char* name : {"shape99.obj", "shape1.obj", "shape7_3.obj", "shape5.pngfeat0.png"}) {
+    write(std::string("out/") + name, "mine");
+    EXPECT_EQ(program("export " + kettle + " -o {}/out"), 1) << name;
+    EXPECT_NE(log().find("is not part of its scene"), std::string::npos) << log();
+    EXPECT_EQ(read_file(path(std::string("out/") + name)), "mine");
+    fs::remove(path(std::string("out/") + name));
+  }
+  EXPECT_EQ(program("export " + kettle + " -o {}/out"), 0) << log();
+}
+
 // Names that the system does not resolve, though their resolved form is a file.
 TEST_F(Guards, AnotherSpellingOfAnOutputIsNotAnotherFile) {
   const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";

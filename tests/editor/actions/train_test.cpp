@@ -180,6 +180,16 @@ TEST_F(Train, CheckpointsThatCannotBeWrittenDoNotStopIt) {
   write_text(at("linked.training/rebake-transforms.json"), "{}");
   expect_error(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/linked", "side": 16, "steps": 600})",
                "rebake-transforms.json");
+  // Nor files of their names that another program made.
+  for (const char* name : {"rebake-preview.png", "rebake-progress.csv", "rebake-checkpoint"}) {
+    fs::create_directories(at("named.training"));
+    write_text(at("named.training") / fs::path(name), "mine");
+    expect_error(
+        R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/named", "side": 16, "steps": 600, "fresh": true})",
+        name);
+    EXPECT_EQ(read_file(at("named.training") / fs::path(name)), "mine");
+    fs::remove(at("named.training") / fs::path(name));
+  }
   EXPECT_EQ(folder_hash(at("cap")), photograph_bytes);
   fs::create_directories(at("out.training/rebake-checkpoint"));  // a folder where the file should be
   run(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/out", "side": 16, "steps": 600, "fresh": true})");
