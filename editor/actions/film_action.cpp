@@ -215,7 +215,7 @@ std::vector<fs::path> FilmAction::input_files(const nlohmann::json& object) {
 void run(Session& session, const FilmAction& action) {
   check_fields(action);
   for (const fs::path& file : FilmAction::input_files({{"path", action.path}}))
-    session.document.protect_file(file, "a file of the cameras of this run");
+    session.document.protect_file(file, "a camera file of this run, or a picture that it names");
   Film(session, action).run();
 }
 
