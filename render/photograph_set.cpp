@@ -5,6 +5,7 @@
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/photographs.h"
+#include "render/image.h"
 
 namespace rebake {
 
@@ -16,6 +17,17 @@ std::vector<PhotoCamera> read_cameras(const PhotographSource& source, std::vecto
     camera.far_plane *= source.scale;
   }
   return cameras;
+}
+
+std::vector<std::filesystem::path> files_with_cameras(const std::filesystem::path& camera_file,
+                                                      const std::string& format) {
+  std::vector<std::string> notes;
+  const std::vector<PhotoCamera> cameras = read_cameras(camera_file, format, {}, notes);
+  std::vector<std::filesystem::path> files = camera_format_for(camera_file, format).files(camera_file);
+  for (std::filesystem::path& file : named_files(camera_file, cameras)) files.push_back(std::move(file));
+  for (std::filesystem::path& file : capture_files(camera_file, cameras))
+    if (!is_rendered_picture(file)) files.push_back(std::move(file));
+  return files;
 }
 
 PhotographSet read_photographs(const PhotographSource& source, const std::vector<PhotoCamera>& cameras,

@@ -22,6 +22,11 @@ struct PhotographSource {
 /// The cameras of a source in Rebake's frame. Appends notes. Throws FileError.
 std::vector<PhotoCamera> read_cameras(const PhotographSource& source, std::vector<std::string>& notes);
 
+/// All that a run which reads cameras must not replace: the camera files, the photographs and masks that they name, and
+/// other files of the capture unless Rebake rendered them, such as pictures of an earlier comparison. Throws FileError.
+std::vector<std::filesystem::path> files_with_cameras(const std::filesystem::path& camera_file,
+                                                      const std::string& format);
+
 /// The photographs of cameras that exist.
 struct PhotographSet {
   std::vector<PhotoCamera> cameras;  ///< of these photographs

@@ -71,16 +71,6 @@ void check_output(const fs::path& folder, const std::vector<std::string>& names,
     throw FileError(table, "exists and is not a table of this comparison; choose another folder");
 }
 
-// The camera files with the files that they name, and others of the capture. Pictures of an earlier comparison have the
-// names of photographs.
-std::vector<fs::path> files_of(const fs::path& path, const std::string& format) {
-  std::vector<std::string> notes;
-  std::vector<fs::path> files = named_files(path, read_cameras(path, format, {}, notes));
-  for (fs::path& file : files_with_cameras(path, format))
-    if (!is_rendered_picture(file)) files.push_back(std::move(file));
-  return files;
-}
-
 Image halved(const Image& image) {
   Image half{image.width / 2, image.height / 2, {}, {}};
   for (int y = 0; y < half.height; ++y)
@@ -128,9 +118,9 @@ std::vector<fs::path> ComparePhotographsAction::input_files(const nlohmann::json
   const auto cameras = object.find("cameras");
   if (cameras == object.end() || !cameras->is_string()) return {};
   const auto format = object.find("format");
-  return files_of(cameras->get<std::string>(), format == object.end() || !format->is_string() || *format == "auto"
-                                                   ? ""
-                                                   : format->get<std::string>());
+  return files_with_cameras(
+      cameras->get<std::string>(),
+      format == object.end() || !format->is_string() || *format == "auto" ? "" : format->get<std::string>());
 }
 
 void run(Session& session, const ComparePhotographsAction& action) {
@@ -143,7 +133,7 @@ void run(Session& session, const ComparePhotographsAction& action) {
   const std::vector<PhotoCamera> cameras =
       read_cameras(PhotographSource{action.cameras, action.format.name, action.world, action.scale}, notes);
   const std::vector<Camera> views = views_of(cameras, dropped);
-  for (const fs::path& file : files_of(action.cameras, action.format.name))
+  for (const fs::path& file : files_with_cameras(action.cameras, action.format.name))
     session.document.protect_file(file, "a file of the capture");
   for (const std::string& note : notes) session.say(fmt::format("warning: {}: {}", action.cameras, note));
   std::vector<std::string> names = photo_names(cameras);

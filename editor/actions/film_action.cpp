@@ -20,8 +20,8 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
-#include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/motion/scene_at.h"
+#include "render/photograph_set.h"
 
 namespace rebake {
 

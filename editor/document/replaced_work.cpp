@@ -84,7 +84,7 @@ void refuse_replacing_work_at(const fs::path& path) {
 void refuse_replacing_work(const fs::path& path) {
   refuse_replacing_work_at(path);
   // What a link leads to is replaced, not the link.
-  if (const fs::path target = plain_path(path); target != path) refuse_replacing_work_at(target);
+  if (const fs::path target = plain_path(path); target != absolute_path(path)) refuse_replacing_work_at(target);
 }
 
 void refuse_replacing_foreign(const fs::path& path) {

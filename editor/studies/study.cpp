@@ -201,6 +201,9 @@ std::filesystem::path own_folder(const StudyInput& input, const std::string& stu
     throw FileError(folder, "exists and was not made by this study; choose another output folder");
   std::filesystem::create_directories(folder, error);
   if (error) throw FileError(folder, "cannot be created: " + error.message());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_symlink(error))
+      throw FileError(entry.path(), "is a symbolic link; remove it, since the study would overwrite its target");
   write_file_atomically(marker, contents, {});
   return folder;
 }

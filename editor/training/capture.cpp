@@ -6,6 +6,7 @@
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/photographs.h"
+#include "render/photograph_set.h"
 
 namespace rebake {
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/error.h"
@@ -51,7 +52,10 @@ std::optional<std::string> read_checkpoint(const fs::path& file, nlohmann::json&
 }
 
 bool is_checkpoint(const fs::path& file) {
-  return read_file(file).starts_with(fmt::format("{{\"checkpoint\":\"{}\"", mark));
+  const std::string begins = fmt::format("{{\"checkpoint\":\"{}\"", mark);
+  std::string read(begins.size(), ' ');
+  std::ifstream in(file, std::ios::binary);
+  return static_cast<bool>(in.read(read.data(), static_cast<std::streamsize>(read.size()))) && read == begins;
 }
 
 }  // namespace rebake

@@ -164,7 +164,7 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
   for (const HoleLoop& loop : borders.loops) {
     progress.at("filling",
                 static_cast<double>(result.holes + result.unfilled) / static_cast<double>(borders.loops.size()));
-    HolePatch patch = loop.points.size() > longest ? HolePatch() : hole_patch(loop);
+    HolePatch patch = loop.points.size() > longest ? HolePatch() : hole_patch(loop, progress);
     std::vector<std::optional<Bytes>> border;
     const Vec3 view = patch.faces.empty() ? Vec3::Zero() : normal_of(patch);
     for (const auto& corners : loop.corners) {

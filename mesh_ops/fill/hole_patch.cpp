@@ -7,6 +7,10 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 
@@ -24,9 +28,26 @@ struct Corners {
   Corners(int first, int second, int third) : a(first), b(second), c(third) {}
 };
 
+// Shows the progress of long triangulations, and ends them on cancellation.
+class Steps : public pmp::Hole_filling::Default_visitor {
+ public:
+  Steps(std::size_t points, const Progress& progress) : points_(points), progress_(progress) {}
+  void cubic_step() {
+    constexpr std::size_t between = 4096;
+    if (++done_ % between != 0) return;
+    const auto pairs = static_cast<double>(points_ * points_) / 2;
+    progress_.at(fmt::format("filling a hole of {} points", points_),
+                 std::min(1.0, static_cast<double>(done_) / pairs));
+  }
+
+ private:
+  std::size_t points_, done_ = 0;
+  const Progress& progress_;
+};
+
 }  // namespace
 
-HolePatch hole_patch(const HoleLoop& loop) {
+HolePatch hole_patch(const HoleLoop& loop, const Progress& progress) {
   const Vec3 origin = loop.points.front();
   double size = 0;
   for (const Vec3& p : loop.points) size = std::max(size, (p - origin).norm());
@@ -41,8 +62,9 @@ HolePatch hole_patch(const HoleLoop& loop) {
   for (const Vec3& p : loop.outer_points) outer.push_back(point(p));
   std::vector<Corners> coarse;
   // The search among Delaunay triangles is faster, but decides ties, as regular borders have, by memory addresses.
+  Steps steps(border.size(), progress);
   pmp::triangulate_hole_polyline(border, outer, std::back_inserter(coarse),
-                                 CGAL::parameters::use_delaunay_triangulation(false));
+                                 CGAL::parameters::use_delaunay_triangulation(false).visitor(std::ref(steps)));
   if (coarse.empty()) return {};
   Mesh mesh;
   std::vector<Mesh::Vertex_index> vertices;

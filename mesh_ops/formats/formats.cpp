@@ -121,12 +121,12 @@ Scene read_glb(const fs::path& file, const ReadOptions& options, const Progress&
 
 constexpr char obj_extension[] = ".obj", glb_extension[] = ".glb", gltf_extension[] = ".gltf", ply_extension[] = ".ply";
 
-constexpr Format::Folder nerf2mesh_folder{has_nerf2mesh_decoder, is_nerf2mesh_file,
+constexpr Format::Folder nerf2mesh_folder{has_nerf2mesh_decoder, own_nerf2mesh_files,
                                           [](const fs::path&) { return std::set<std::string>(); }};
-constexpr Format::Folder mobilenerf_folder{has_baked_decoder, is_baked_file,
+constexpr Format::Folder mobilenerf_folder{has_baked_decoder, own_baked_files,
                                            [](const fs::path&) { return std::set<std::string>(); }};
 constexpr Format::Folder rebake_folder{
-    has_scene_json, [](const fs::path& file) { return file.filename() == "scene.json"; }, object_folders};
+    has_scene_json, [](const fs::path&) { return std::set<std::string>{"scene.json"}; }, object_folders};
 
 constexpr Format table[] = {
     {"mobilenerf", "MobileNeRF", "for the published viewers", "mlp.json", true, true,

@@ -39,8 +39,7 @@ struct Format {
   struct Folder {
     /// Whether the files have the content of the format, not only the names.
     bool (*is_genuine)(const std::filesystem::path& folder);
-    /// Whether this file in a folder of the format belongs to it.
-    bool (*is_own_file)(const std::filesystem::path& file);
+    std::set<std::string> (*own_files)(const std::filesystem::path& folder);    ///< names of its files in a folder
     std::set<std::string> (*own_folders)(const std::filesystem::path& folder);  ///< names of the folders in it
   };
   const Folder* folder;

@@ -104,10 +104,15 @@ void refuse_foreign_content(const fs::path& folder) {
     if (!genuine) refuse(folder / marker);
   const bool known = !markers.empty();
   // At the top, only files of the formats whose markers are there.
-  const auto is_own_file = [&](const fs::path& file, bool top) {
-    return std::ranges::any_of(formats(), [&](const Format& format) {
-      return format.folder != nullptr && format.folder->is_own_file(file) && (!top || markers.contains(format.marker));
-    });
+  std::map<fs::path, std::set<std::string>> files_in;
+  const auto is_own_file = [&](const fs::path& file) {
+    const fs::path place = file.parent_path();
+    const auto [found, first] = files_in.try_emplace(place);
+    if (first)
+      for (const Format& format : formats())
+        if (format.folder != nullptr && (place != folder || markers.contains(format.marker)))
+          found->second.merge(format.folder->own_files(place));
+    return found->second.contains(file.filename().string());
   };
   if (!known && !fs::is_empty(folder)) refuse(fs::directory_iterator(folder)->path());
   std::error_code error;
@@ -115,8 +120,7 @@ void refuse_foreign_content(const fs::path& folder) {
        it.increment(error)) {
     const std::string name = it->path().filename().string();
     if (it->is_symlink()) refuse(it->path());
-    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_own_file(it->path(), it.depth() == 0))
-      refuse(it->path());
+    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_own_file(it->path())) refuse(it->path());
   }
   if (error) throw FileError(folder, "cannot be read: " + error.message());
 }

@@ -11,8 +11,8 @@
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/photo_names.h"
-#include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/formats/scene_files.h"
+#include "render/photograph_set.h"
 
 namespace rebake {
 

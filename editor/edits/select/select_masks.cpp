@@ -16,6 +16,7 @@
 #include "mesh_ops/formats/cameras/mask_images.h"
 #include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/formats/scene_files.h"
+#include "render/photograph_set.h"
 
 namespace rebake {
 

@@ -6,7 +6,6 @@
 
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/scene_change.h"
-#include "editor/edits/select/selecting.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/fields/field_info.h"
@@ -33,17 +32,17 @@ const FieldInfo* field_named(const std::vector<FieldInfo>& fields, const char* n
 
 // Number of selected triangles in a scene or its preview: in the nodes of the scope, or in `only` and its descendants.
 std::size_t selected_in(const DocumentEditor& editor, const Scene& scene, NodeId only) {
-  std::size_t triangles = 0;
-  const auto add = [&](const PlacedNode& placed) {
-    if (placed.node->selection) triangles += count(*placed.node->selection);
+  // As selectable(): the hidden node itself counts if it is named.
+  const auto counts = [&](const PlacedNode& placed) {
+    if (only == NodeId::none) return editor.in_scope(scene, placed);
+    if (placed.node->id == only) return !placed.locked;
+    NodeId up = placed.node->id;
+    while (up != NodeId::none && up != only) up = parent_of(scene, up);
+    return up == only && placed.visible && !placed.locked;
   };
-  if (only != NodeId::none) {
-    // As edits with a named node: also a hidden one.
-    for (const PlacedNode& placed : selectable(scene, NodeRef{only})) add(placed);
-    return triangles;
-  }
+  std::size_t triangles = 0;
   for (const PlacedNode& placed : placed_nodes(scene))
-    if (editor.in_scope(scene, placed)) add(placed);
+    if (placed.node->selection && counts(placed)) triangles += count(*placed.node->selection);
   return triangles;
 }
 

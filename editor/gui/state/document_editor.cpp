@@ -265,13 +265,11 @@ Box DocumentEditor::focus() const {
 
 std::vector<std::optional<NodeRef>> DocumentEditor::scope(bool selected) const {
   if (active.empty()) return {std::nullopt};
-  const std::set<NodeId> inside = nodes_in_scope(selected);
   std::vector<std::optional<NodeRef>> nodes;
-  for (const NodeId node : inside) {
-    // An edit of an object acts on the objects below it too.
-    NodeId up = parent_of(scene(), node);
-    while (up != NodeId::none && !inside.contains(up)) up = parent_of(scene(), up);
-    if (up == NodeId::none) nodes.emplace_back(NodeRef{node});
+  for (const PlacedNode& placed : placed_nodes(scene())) {
+    if (!placed.node->object) continue;
+    if (selected && !selected_.contains(placed.node->id)) continue;
+    if (in_scope(placed)) nodes.emplace_back(NodeRef{placed.node->id});
   }
   return nodes;
 }

@@ -109,46 +109,50 @@ bool passes(const WideFace& face, const WidePoint& from, const WidePoint& to) {
   return left[0] == left[1] && left[1] == left[2];
 }
 
-// A point just inside, beside a face that contains the point `on` of the surface: over its interior, and far closer to
-// it than to others. Not on the face's symmetry axis, where segments might pass through edges.
-WidePoint beside(const WideFace& face, const WidePoint& on) {
+// A point just inside, beside a face that contains a point of the surface.
+struct Beside {
+  WidePoint place;
+  double clearance = 0;  // distance of its projection from the face's edges
+};
+
+// Over the interior of the face, far closer to it than to others. Not on its symmetry axis, where segments might pass
+// through edges.
+Beside beside(const WideFace& face, const WidePoint& on) {
   WidePoint into = minus({Wide(0), Wide(0), Wide(0)}, on);
-  for (const auto& [corner, share] : {std::pair(0, 0.5), std::pair(1, 0.3), std::pair(2, 0.2)})
+  for (const auto& [corner, share] : {std::pair(0, 0.523), std::pair(1, 0.291), std::pair(2, 0.186)})
     into = moved(into, face.corners[static_cast<std::size_t>(corner)], Wide(share));
-  const WidePoint over = moved(on, into, Wide(depth_inside / sqrt(dot(into, into))));
-  return moved(over, face.frame.normal, Wide(-depth_inside * least_share));
+  const Wide length = sqrt(dot(into, into));
+  const WidePoint over = length > 0 ? moved(on, into, Wide(depth_inside / length)) : on;
+  const pl::Seen<Wide> s = seen_from(face, over);
+  return {moved(over, face.frame.normal, Wide(-depth_inside * least_share)),
+          std::min({value_of(s.a[0]), value_of(s.a[1]), value_of(s.a[2])})};
 }
 
 // For a point on the surface, a point just inside; otherwise nothing. In the direction of the angle-weighted normal of
 // the faces that meet, which is inside at most corners (Bærentzen, Aanæs 2005); not where parts of the cage touch, nor
-// at the tip of a cone that does not contain its mean direction. There, beside the face with the largest angle.
+// at the tip of a cone that does not contain its mean direction. There, beside the face with most clearance, which
+// slivers do not have.
 std::optional<WidePoint> point_just_inside(const std::vector<WideFace>& faces, const WidePoint& point) {
   const std::optional<WidePoint> on = snapped(faces, point);
   if (!on) return std::nullopt;
   WidePoint normal{Wide(0), Wide(0), Wide(0)};
-  const WideFace* widest = nullptr;
-  double widest_angle = 0;
+  Beside inside{*on};
   for (const WideFace& face : faces) {
     const pl::Seen<Wide> s = seen_from(face, *on);
     if (pl::distance_of(s) > wide_rounding) continue;
-    const double angle = angle_at(face, s);
-    normal = moved(normal, face.frame.normal, Wide(angle));
-    if (angle <= widest_angle) continue;
-    widest_angle = angle;
-    widest = &face;
+    normal = moved(normal, face.frame.normal, Wide(angle_at(face, s)));
+    if (const Beside one = beside(face, *on); one.clearance > inside.clearance) inside = one;
   }
-  if (widest == nullptr) return on;
-  const WidePoint inside = beside(*widest, *on);
   const Wide length = sqrt(dot(normal, normal));
-  if (!(length > 0)) return inside;
+  if (!(length > 0)) return inside.place;
   const WidePoint below = moved(*on, normal, Wide(-depth_inside / length));
   // Along an edge where parts touch, or outside.
   const bool is_close = std::any_of(faces.begin(), faces.end(), [&](const WideFace& face) {
     return pl::distance_of(seen_from(face, below)) < least_share * depth_inside;
   });
-  const auto between =
-      std::count_if(faces.begin(), faces.end(), [&](const WideFace& face) { return passes(face, inside, below); });
-  return is_close || between % 2 != 0 ? inside : below;
+  const auto between = std::count_if(faces.begin(), faces.end(),
+                                     [&](const WideFace& face) { return passes(face, inside.place, below); });
+  return is_close || between % 2 != 0 ? inside.place : below;
 }
 
 // The point where gradients are taken: just inside for points on the surface.
@@ -167,11 +171,13 @@ void add_terms(const WideFace& face, const pl::Seen<T>& s, std::vector<T>& sums)
 }
 
 // Where parts with separate vertices touch, only the sum of the gradients of equal vertices is finite. The first one
-// gets it.
-void join_equal_vertices(const CageFrame& cage, const std::vector<WideFace>& faces, std::vector<WideDual>& gradients) {
+// gets it. `inside`: the point just inside.
+void join_equal_vertices(const CageFrame& cage, const std::vector<WideFace>& faces, const WidePoint& inside,
+                         std::vector<WideDual>& gradients) {
   std::vector<std::uint32_t> vertices;
   for (const WideFace& face : faces)
-    vertices.insert(vertices.end(), face.frame.vertices.begin(), face.frame.vertices.end());
+    if (pl::distance_of(seen_from(face, inside)) <= 2 * depth_inside)
+      vertices.insert(vertices.end(), face.frame.vertices.begin(), face.frame.vertices.end());
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   for (std::size_t k = 1; k < vertices.size(); ++k) {
@@ -210,7 +216,7 @@ std::vector<WideDual> near_faces::wide_gradients(const CageFrame& cage, const Wi
   const pl::Point<WideDual> place = with_gradients(inside.value_or(point));
   for (const WideFace& face : faces) add_terms(face, seen_from(face, place), sums);
   normalise(sums);
-  if (inside) join_equal_vertices(cage, faces, sums);
+  if (inside) join_equal_vertices(cage, faces, *inside, sums);
   return sums;
 }
 

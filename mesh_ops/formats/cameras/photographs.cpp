@@ -83,14 +83,6 @@ std::vector<fs::path> named_files(const fs::path& camera_file, const std::vector
   return files;
 }
 
-std::vector<fs::path> files_with_cameras(const fs::path& camera_file, const std::string& format) {
-  std::vector<std::string> notes;
-  std::vector<fs::path> files = camera_format_for(camera_file, format).files(camera_file);
-  for (fs::path& file : capture_files(camera_file, read_cameras(camera_file, format, {}, notes)))
-    files.push_back(std::move(file));
-  return files;
-}
-
 std::vector<fs::path> captured_files_at(const fs::path& folder, FilesOfCapture files_of) {
   std::error_code error;
   const fs::path whole = fs::weakly_canonical(folder, error);

@@ -24,11 +24,6 @@ std::vector<std::filesystem::path> capture_files(const std::filesystem::path& ca
 std::vector<std::filesystem::path> named_files(const std::filesystem::path& camera_file,
                                                const std::vector<PhotoCamera>& cameras);
 
-/// All that a run which reads cameras must not replace: the camera files, and capture_files(). `format` as in
-/// camera_format_for().
-std::vector<std::filesystem::path> files_with_cameras(const std::filesystem::path& camera_file,
-                                                      const std::string& format);
-
 /// Returns files of a capture.
 using FilesOfCapture = std::vector<std::filesystem::path> (*)(const std::filesystem::path& camera_file,
                                                               const std::vector<PhotoCamera>& cameras);

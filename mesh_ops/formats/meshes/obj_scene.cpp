@@ -81,6 +81,22 @@ std::vector<fs::path> named_pictures(const fs::path& folder, const fs::path& nam
   return pictures;
 }
 
+// The material files that a file names. A line may name several; a name may contain blanks if there is such a file.
+std::vector<fs::path> library_paths(const fs::path& file, const std::vector<std::string>& lines) {
+  const fs::path folder = file.parent_path();
+  std::vector<fs::path> paths;
+  for (const std::string& line : lines) {
+    const fs::path whole = path_beside(folder, line, file);
+    if (fs::exists(folder / whole)) {
+      paths.push_back(whole);
+      continue;
+    }
+    std::istringstream names(line);
+    for (std::string name; names >> name;) paths.push_back(path_beside(folder, name, file));
+  }
+  return paths;
+}
+
 struct ObjFile {
   ObjMesh mesh;
   std::vector<fs::path> libraries;
@@ -90,8 +106,7 @@ struct ObjFile {
 ObjFile read_with_materials(const fs::path& file) {
   ObjFile read{read_obj(read_file(file), file, {true, true}), {}, {}};
   const fs::path folder = file.parent_path();
-  for (const std::string& library : read.mesh.libraries) {
-    const fs::path name = path_beside(folder, library, file);
+  for (const fs::path& name : library_paths(file, read.mesh.libraries)) {
     if (!fs::exists(folder / name)) {
       read.mesh.assumptions.push_back(fmt::format("{} does not exist: its materials are white", name.string()));
       continue;
@@ -163,9 +178,9 @@ std::vector<fs::path> obj_files(const fs::path& file) {
 std::vector<fs::path> obj_unread_files(const fs::path& file) {
   const fs::path folder = file.parent_path();
   std::vector<fs::path> files;
-  for (const std::string& library : read_obj(read_file(file), file, {true, true}).libraries) {
+  for (const fs::path& name : library_paths(file, read_obj(read_file(file), file, {true, true}).libraries)) {
     std::error_code error;
-    if (const fs::path name = path_beside(folder, library, file); fs::is_regular_file(folder / name, error))
+    if (fs::is_regular_file(folder / name, error))
       for (fs::path& picture : named_pictures(folder, name)) files.push_back(std::move(picture));
   }
   return files;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/mobilenerf/baked_layout.h"
 #include "mesh_ops/formats/mobilenerf/json_text.h"
@@ -20,6 +21,8 @@ namespace {
 // Files that Rebake adds to a MobileNeRF folder.
 constexpr std::array<std::string_view, 3> sidecar_names{"turns.bin", "turns.json", "baked.bin"};
 
+constexpr const char* training_report = "rebake_training.json";
+
 // Removes leading digits. Returns their number.
 std::size_t skip_digits(std::string_view& text) {
   const std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
@@ -30,8 +33,7 @@ std::size_t skip_digits(std::string_view& text) {
 }  // namespace
 
 bool is_baked_file_name(const std::string& name) {
-  // The report of a training.
-  if (name == "rebake_training.json") return true;
+  if (name == training_report) return true;
   if (name == "mlp.json" || std::ranges::find(sidecar_names, name) != sidecar_names.end()) return true;
   std::string_view rest = name;
   if (!rest.starts_with("shape")) return false;
@@ -41,14 +43,6 @@ bool is_baked_file_name(const std::string& name) {
   if (!rest.starts_with('_')) return false;
   rest.remove_prefix(1);
   return skip_digits(rest) > 0 && rest == ".obj";
-}
-
-bool is_baked_file(const fs::path& file) {
-  const std::string name = file.filename().string();
-  if (!is_baked_file_name(name)) return false;
-  if (!name.starts_with("shape")) return true;
-  const std::vector<fs::path> read = baked_files(file.parent_path());
-  return std::ranges::find(read, fs::path(name)) != read.end();
 }
 
 bool has_baked_decoder(const fs::path& folder) {
@@ -78,6 +72,20 @@ std::vector<fs::path> baked_files(const fs::path& folder) {
       if (!texture.empty()) files.emplace_back(texture);
   }
   return files;
+}
+
+std::set<std::string> own_baked_files(const fs::path& folder) {
+  std::set<std::string> names{"mlp.json", training_report};
+  names.insert(sidecar_names.begin(), sidecar_names.end());
+  std::error_code error;
+  if (!fs::is_regular_file(folder / "mlp.json", error) || !has_baked_decoder(folder)) return names;
+  try {
+    for (const fs::path& file : baked_files(folder)) names.insert(file.string());
+  } catch (const FileError&) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+      if (const std::string name = entry.path().filename().string(); is_baked_file_name(name)) names.insert(name);
+  }
+  return names;
 }
 
 }  // namespace rebake

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -9,9 +10,10 @@ namespace rebake {
 /// Whether a file name belongs to a MobileNeRF folder, or to the files that Rebake adds to one.
 bool is_baked_file_name(const std::string& name);
 
-/// Whether a file belongs to the MobileNeRF scene of its folder, or is one that Rebake adds there. Geometry and
-/// textures belong to it if they are read with it: another program's file may have such a name.
-bool is_baked_file(const std::filesystem::path& file);
+/// Names of the files in a folder that belong to its MobileNeRF scene, or that Rebake adds there. Geometry and textures
+/// belong to it if they are read with it, since another program's file may have such a name; in a damaged folder, by
+/// their names.
+std::set<std::string> own_baked_files(const std::filesystem::path& folder);
 
 /// Whether the decoder of a folder (mlp.json) is one by its content, not only by its name.
 bool has_baked_decoder(const std::filesystem::path& folder);

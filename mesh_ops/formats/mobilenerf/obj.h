@@ -19,7 +19,7 @@ struct ObjMesh {
   bool needs_repair = false;                  ///< viewers would draw the file otherwise; exports must not copy it
 
   // Only with ObjReading::materials.
-  std::vector<std::string> libraries = {};      ///< names after mtllib
+  std::vector<std::string> libraries = {};      ///< what follows mtllib: one name or several
   std::vector<std::string> materials = {};      ///< names after usemtl, first "" for faces before the first one
   std::vector<std::uint32_t> material_of = {};  ///< per face: index in `materials`
 };

@@ -82,12 +82,17 @@ bool is_file_name(const std::string& name) {
 
 }  // namespace
 
-bool is_nerf2mesh_file(const fs::path& file) {
-  const fs::path folder = file.parent_path();
-  if (!is_file_name(file.filename().string()) || !fs::exists(folder / "mlp.json") || !has_nerf2mesh_decoder(folder))
-    return false;
-  const std::vector<fs::path> read = nerf2mesh_files(folder);
-  return std::ranges::find(read, file.filename()) != read.end();
+std::set<std::string> own_nerf2mesh_files(const fs::path& folder) {
+  std::set<std::string> names{"mlp.json"};
+  std::error_code error;
+  if (!fs::is_regular_file(folder / "mlp.json", error) || !has_nerf2mesh_decoder(folder)) return names;
+  try {
+    for (const fs::path& file : nerf2mesh_files(folder)) names.insert(file.string());
+  } catch (const FileError&) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+      if (const std::string name = entry.path().filename().string(); is_file_name(name)) names.insert(name);
+  }
+  return names;
 }
 
 std::vector<fs::path> nerf2mesh_files(const fs::path& folder) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,8 @@ Affine nerf2mesh_to_y_up();
 bool is_nerf2mesh_folder(const std::filesystem::path& folder);
 /// Whether its mlp.json is that of nerf2mesh.
 bool has_nerf2mesh_decoder(const std::filesystem::path& folder);
-/// Whether a file is read with the scene of its folder.
-bool is_nerf2mesh_file(const std::filesystem::path& file);
+/// Names of the files in a folder that are read with its scene; in a damaged folder, those that could be.
+std::set<std::string> own_nerf2mesh_files(const std::filesystem::path& folder);
 /// The files that read_nerf2mesh_folder() reads, relative to the folder.
 std::vector<std::filesystem::path> nerf2mesh_files(const std::filesystem::path& folder);
 

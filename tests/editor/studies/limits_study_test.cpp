@@ -1,12 +1,25 @@
 #include <gtest/gtest.h>
 
 #include "editor/studies/study.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/thorough.h"
 
 namespace rebake {
 namespace {
+
+TEST(OwnFolder, OfAStudyContainsNoLinks) {
+  const test::TemporaryFolder folder;
+  Renderer renderer;
+  const Scene scene;
+  const StudyInput input{[&]() -> Renderer& { return renderer; }, scene, {}, 1, {}, {}, folder.path()};
+  const std::filesystem::path own = own_folder(input, "limits");
+  EXPECT_EQ(own_folder(input, "limits"), own) << "the folder of an earlier run";
+  std::filesystem::create_directories(own / "deeper");
+  std::filesystem::create_symlink("/nowhere/photograph.png", own / "deeper/opacity.png");
+  EXPECT_THROW(own_folder(input, "limits"), FileError);
+}
 
 TEST(LimitsStudy, MeasuresThreeLimitsAndGoesOnWithBakedScenes) {
   REBAKE_ONLY_DEEP();

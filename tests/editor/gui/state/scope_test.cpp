@@ -14,7 +14,6 @@
 #include "editor/edits/select/select_triangles.h"
 #include "editor/gui/state/commands.h"
 #include "mesh_ops/formats/export.h"
-#include "mesh_ops/formats/formats.h"
 #include "tests/support/window_state.h"
 
 namespace rebake::test {
@@ -165,30 +164,6 @@ TEST_F(Scope, OneEditNamesOneNodeOrEverything) {
   editor->active = {nodes[0]};
   EXPECT_FALSE(editor->one_deform_target());
   EXPECT_NE(editor->messages.log().back().text.find("no visible, unlocked object"), std::string::npos);
-}
-
-// Rebake reads scenes in which an object has objects below it. An edit of the upper one acts on both.
-TEST_F(Scope, ObjectsBelowPickedObjectsAreEditedOnce) {
-  Scene nested;
-  Node upper, lower;
-  upper.name = "upper";
-  upper.object = made_object({.columns = 4, .rows = 3});
-  lower.name = "lower";
-  lower.object = upper.object;
-  upper.children.push_back(std::make_shared<const Node>(lower));
-  nested = with_added(nested, upper, NodeId::none, 0);
-  format_named("rebake").write(nested, home.path() / "nested", {}, {});
-  editor->project.open({(home.path() / "nested").string()});
-  wait();
-  const NodeId top = editor->scene().roots.back()->id;
-  ASSERT_EQ(editor->scene().roots.back()->children.size(), 1U);
-  editor->active = {top};
-  command_named("Invert").run(*editor);
-  wait();
-  EXPECT_EQ(editor->selected_triangles(), 2 * upper.object->triangle_count());
-  editor->active = {editor->scene().roots.back()->children.front()->id};
-  EXPECT_EQ(editor->nodes_in_scope().size(), 1U);
-  EXPECT_EQ(editor->selected_triangles(), upper.object->triangle_count());
 }
 
 }  // namespace

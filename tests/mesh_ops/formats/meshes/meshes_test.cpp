@@ -128,6 +128,21 @@ TEST_F(Meshes, ObjWithMaterials) {
   EXPECT_FALSE(scene.roots[0]->object->origin->assumptions.empty());
 }
 
+TEST_F(Meshes, ObjLinesNameSeveralMaterialFilesOrOneWithBlanks) {
+  write_text(path("first.mtl"), "newmtl other\nKd 1 0 0\n");
+  write_text(path("second.mtl"), "newmtl picture\nmap_Kd image.png\n");
+  std::string text = square_obj;
+  text.replace(0, text.find('\n'), "mtllib first.mtl  second.mtl");
+  write_text(path("square.obj"), text);
+  expect_quarters(read("square.obj"), "obj");
+  const std::vector<fs::path> expected{"first.mtl", "image.png", "second.mtl"};
+  EXPECT_EQ(scene_files(path("square.obj")), expected);
+  fs::rename(path("second.mtl"), path("second of two.mtl"));
+  text.replace(0, text.find('\n'), "mtllib second of two.mtl");
+  write_text(path("square.obj"), text);
+  expect_quarters(read("square.obj"), "obj");
+}
+
 TEST_F(Meshes, ImagesRepeat) {
   // The image twice along u, and shifted by −3 tiles along v.
   std::string text = square_obj;
