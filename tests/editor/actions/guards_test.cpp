@@ -254,7 +254,7 @@ TEST_F(Guards, PicturesThatMaterialsNameAreProtectedEvenIfNotRead) {
   }
 }
 
-// A link among another folder's files replaces what it leads to.
+// Writing to a symbolic link replaces the file it leads to.
 TEST_F(Guards, LinksToFilesOfOthersAreNotWrittenThrough) {
   fs::create_directories(path("cap/images"));
   fs::create_directories(path("film"));
