@@ -62,6 +62,7 @@ void check_output(const fs::path& folder, const std::vector<std::string>& names,
     const fs::path file = folder / (name + ".png");
     sources.check_file(file);
     refuse_replacing_work(file);
+    refuse_replacing_captured(file);
     if (fs::exists(fs::symlink_status(file, error)) && (fs::is_symlink(file, error) || !is_rendered_picture(file)))
       throw FileError(file, "exists and was not made by Rebake, or is a link; choose another folder");
   }

@@ -34,11 +34,8 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
     throw FileError(path, what + ", so it is not replaced; choose another name, or remove it first");
   };
   const CameraFormat* there = camera_format_at(path);
+  if (there == nullptr) refuse("exists and is not a camera file");
   const bool own = std::filesystem::is_regular_file(path, error) && wrote(path);
-  if (there == nullptr) {
-    if (!own) refuse("exists and is not a camera file of Rebake");
-    return;
-  }
   if (there->write == nullptr) refuse(fmt::format("has cameras in the format {}, which is not written", there->name));
   std::vector<std::string> notes;
   const std::vector<PhotoCamera> cameras = read_cameras(path, "", {}, notes);

@@ -27,6 +27,16 @@ Scene with_one_object(Scene scene, std::shared_ptr<const BakedObject> object) {
   return with_added(scene, node, NodeId::none, scene.roots.size());
 }
 
+// The object with the unknown members of mlp.json of all visible objects; of several values the first.
+std::shared_ptr<const BakedObject> with_members(const Scene& scene, const BakedObject& object) {
+  auto result = std::make_shared<BakedObject>(object);
+  for (const PlacedNode& placed : placed_nodes(scene))
+    if (placed.visible && placed.node->object && placed.node->object->decoder->rule == ColorRule::network)
+      result->other_members.insert(placed.node->object->other_members.begin(),
+                                   placed.node->object->other_members.end());
+  return result;
+}
+
 int page_side_of(const Scene& scene, Layout layout) {
   std::vector<const BakedObject*> objects;
   for (const PlacedNode& placed : placed_nodes(scene))
@@ -62,7 +72,8 @@ const FusePlan& PlainSceneBuilder::make_plan(const FuseOptions& options, const P
 Scene PlainSceneBuilder::scene(const Scene& original, std::size_t candidate, const FuseOptions& options,
                                const Progress& progress) {
   plan->chosen = candidate;
-  return with_one_object(original, fuse(composition, *sightlines, *plan, options, progress).object);
+  return with_one_object(original,
+                         with_members(original, *fuse(composition, *sightlines, *plan, options, progress).object));
 }
 
 namespace {
@@ -106,7 +117,7 @@ Scene fused_scene(PlainSceneBuilder& parts, const Scene& scene, std::size_t cand
   name_sharers(scene, report.texels);
   report.hidden0 = fused.object->decoder->hidden0();
   report.hidden1 = fused.object->decoder->hidden1();
-  return with_one_object(scene, std::move(fused.object));
+  return with_one_object(scene, with_members(scene, *fused.object));
 }
 
 // Indices of candidates in the order of trials: the plan's choice, then the others by descending score.

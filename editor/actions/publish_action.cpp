@@ -36,9 +36,12 @@ void refuse_other_folder(const fs::path& folder) {
   if (fs::is_empty(folder)) return;
   if (!is_page(folder / "index.html"))
     throw FileError(folder, "exists and is not a published page; choose a new or empty folder");
+  // Files that some pages have are the page's own only if this one refers to them.
+  const bool has_poster = read_file(folder / "index.html").find("\"poster.png\"") != std::string::npos;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const fs::path inside = entry.path().lexically_relative(folder);
-    const bool is_own = entry.is_directory() ? inside == "data" || inside == "viewer" : is_page_file(inside);
+    const bool is_own = entry.is_directory() ? inside == "data" || inside == "viewer"
+                                             : is_page_file(inside) && (inside != "poster.png" || has_poster);
     if (!is_own || entry.is_symlink())
       throw FileError(
           folder,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -21,6 +22,7 @@ class Session {
   ~Session();
 
   Document document;
+  std::uint64_t document_number = 0;  ///< changes when `document` is replaced by another one
   const Scene& scene() const { return document.scene(); }
   /// Applies an edit and reports its effect.
   void edit(const Edit& edit);

@@ -64,23 +64,31 @@ std::vector<BatchMark::File> latest_outputs(const BatchMark& earlier, const Batc
   return outputs;
 }
 
-bool is_unchanged(const BatchMark::File& file) {
+namespace {
+
+bool has_content(const BatchMark::File& file, std::uint64_t (*hash_at)(const fs::path&)) {
   try {
-    return hash_text(content_hash_at(file.path)) == file.content;
+    return hash_text(hash_at(file.path)) == file.content;
   } catch (const FileError&) {
     return false;
   }
 }
 
+}  // namespace
+
+bool is_unchanged_output(const BatchMark::File& file) { return has_content(file, output_hash_at); }
+
 bool is_up_to_date(const BatchMark& mark, const std::string& key) {
-  return mark.key == key && std::all_of(mark.read.begin(), mark.read.end(), is_unchanged) &&
-         std::all_of(mark.wrote.begin(), mark.wrote.end(), is_unchanged);
+  return mark.key == key &&
+         std::all_of(mark.read.begin(), mark.read.end(),
+                     [](const auto& file) { return has_content(file, content_hash_at); }) &&
+         std::all_of(mark.wrote.begin(), mark.wrote.end(), is_unchanged_output);
 }
 
 std::string edited_output(const std::vector<BatchMark::File>& outputs) {
   const auto edited = std::find_if(outputs.begin(), outputs.end(), [](const BatchMark::File& file) {
     std::error_code error;
-    return fs::exists(file.path, error) && !is_unchanged(file);
+    return fs::exists(file.path, error) && !is_unchanged_output(file);
   });
   return edited == outputs.end() ? "" : edited->path;
 }

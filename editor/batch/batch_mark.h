@@ -27,8 +27,8 @@ std::vector<BatchMark::File> latest_outputs(const BatchMark& earlier, const Batc
 /// The text of a mark that only lists outputs.
 std::string list_of(const std::vector<BatchMark::File>& outputs);
 
-/// Whether the file or folder exists with its recorded content.
-bool is_unchanged(const BatchMark::File& file);
+/// Whether a written file or folder exists with its recorded content.
+bool is_unchanged_output(const BatchMark::File& file);
 /// Whether the scene was done with this key, and all files that it read and wrote are unchanged.
 bool is_up_to_date(const BatchMark& mark, const std::string& key);
 /// The first output that exists with another content than it was written with; empty if there is none.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/batch/batch.h"
+#include "editor/batch/batch_scenes.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
 #include "mesh_ops/base/file_lock.h"

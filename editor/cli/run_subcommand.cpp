@@ -73,7 +73,7 @@ std::string file_list(const Session& session, const std::string& script,
   // Pipes and devices have no content to hash.
   for (const std::filesystem::path& path : wrote)
     if (std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
-      lines += line_of("wrote", path, content_hash_at(path));
+      lines += line_of("wrote", path, output_hash_at(path));
   return lines;
 }
 
@@ -166,7 +166,7 @@ class WrittenList {
     for (; count < written.size(); ++count)
       if (const std::filesystem::path path = absolute_path(written[count]);
           std::filesystem::is_directory(path) || std::filesystem::is_regular_file(path))
-        lines_[path] = line_of("wrote", path, content_hash_at(path));
+        lines_[path] = line_of("wrote", path, output_hash_at(path));
   }
 
   const Session& session_;
@@ -222,14 +222,14 @@ void run_with(const RunOptions& options) {
   session.progress = progress_bar();
   session.say = print_message;
   if (!options.sources.empty())
-    protect_listed(session.document, options.sources, options.scene.empty() ? "" : folder_title(options.scene));
+    protect_listed(session.document, options.sources, options.scene.empty() ? "" : scene_title(options.scene));
   if (!options.files.empty()) check_list(options.files);
   const std::string script = read_input(options.script);
   if (!options.content.empty() && hash_text(content_hash(script)) != options.content)
     throw FileError(options.script, "has changed since the batch began; run the batch again");
   session.document.protect_file(options.script, "the script of this run");
   if (!options.scene.empty()) {
-    variables["name"] = folder_title(options.scene);
+    variables["name"] = scene_title(options.scene);
     variables["path"] = options.scene;
   }
   protect_input_files(session.document, script, variables);

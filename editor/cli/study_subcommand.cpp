@@ -12,6 +12,7 @@
 #include "editor/studies/default_scene.h"
 #include "editor/training/capture.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
 
@@ -53,6 +54,8 @@ void run_study(StudyOptions& options) {
     if (!options.photographs.empty())
       for (const auto& file : files_of_capture({options.photographs}, {}))
         sources.add_file(file, "a file of the capture");
+    for (const std::string& input : {options.representations.snerg, options.representations.plenoctree})
+      if (!input.empty()) protect_input(sources, input);
     prepare_study_folder(study, options.out, sources);
     std::unique_ptr<Renderer> renderer;
     const auto on_demand = [&]() -> Renderer& {
@@ -65,7 +68,7 @@ void run_study(StudyOptions& options) {
                                           fmt::print("{}\n", line);
                                           std::fflush(stdout);
                                         },
-                                        options.dprt, options.representations, options.quick});
+                                        options.dprt, options.representations, options.quick, sources});
     clear_progress_bar();
     print_table(table);
     write_study(study, table, options.out, sources);

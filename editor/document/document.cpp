@@ -173,6 +173,10 @@ Document::Recovered Document::recover(const fs::path& path, const SourceLinks& l
   if (contents.damaged_line > 1) result.lost.push_back(fmt::format("line {} is damaged", contents.damaged_line));
   for (const Journal::Contents::Line& after : contents.after)
     result.lost.push_back(named(after.number, json::parse(after.entry)) + " (behind the damage)");
+  // The rest can still be recovered with the sources of its edits.
+  if (!result.lost.empty() || skips_undone)
+    for (const fs::path& source : imports)
+      result.document.protect_input(source, "a source of an edit in the recovered journal");
   result.edits = history.undo_count();
   if (result.lost.empty() && links.empty() && !skips_undone && contents.damaged_line == 0 && contents.current)
     result.document.journal_ = std::move(journal);

@@ -53,13 +53,17 @@ void refuse_replacing_photographs(const fs::path& path, const fs::path& folder) 
       throw FileError(path, "belongs to a capture: photographs or masks are in its folder; name another folder");
 }
 
-// Pictures among those of a film would count as the film's when it goes on.
+// Pictures among those of a film, also new ones, would count as the film's when it goes on.
 void refuse_replacing_film(const fs::path& path) {
   const fs::path record = absolute_path(path).parent_path() / "film.json";
   const std::string name = path.stem().string();
   std::error_code error;
   if (name.empty() || name.find_first_not_of("0123456789") != std::string::npos) return;
-  if (fs::is_regular_file(record, error) && is_picture_file(path))
+  if (!fs::is_regular_file(record, error)) return;
+  const nlohmann::json film = nlohmann::json::parse(read_file(record), nullptr, false);
+  const bool is_frame = film.is_object() && film.contains("rebake_film") && film.contains("extension") &&
+                        film.at("extension") == path.extension().string();
+  if (is_frame || is_picture_file(path))
     throw FileError(path, "would be a picture of the film in its folder (film.json); name another folder");
 }
 
@@ -85,6 +89,14 @@ void refuse_replacing_work(const fs::path& path) {
   refuse_replacing_work_at(path);
   // What a link leads to is replaced, not the link.
   if (const fs::path target = plain_path(path); target != absolute_path(path)) refuse_replacing_work_at(target);
+}
+
+void refuse_replacing_captured(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return;
+  for (const fs::path& file : captured_files_at(absolute_path(path).parent_path(), named_files))
+    if (fs::equivalent(file, path, error))
+      throw FileError(path, "is a photograph or mask of the capture in its folder; name another folder");
 }
 
 void refuse_replacing_foreign(const fs::path& path) {

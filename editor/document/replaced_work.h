@@ -20,6 +20,10 @@ void refuse_replacing_foreign(const std::filesystem::path& path);
 /// The edits of a project as JSON text, in order; empty if the file is no readable project.
 std::vector<std::string> edits_in(const std::filesystem::path& project);
 
+/// For pictures whose names were not asked for: throws FileError if a capture names the file, also if Rebake rendered
+/// it.
+void refuse_replacing_captured(const std::filesystem::path& path);
+
 /// For projects that are written by name: throws FileError if the file exists and is another file than a project, a
 /// damaged project, one of a newer version, or one with more than `edits` edits.
 void refuse_replacing_more(const std::filesystem::path& path, std::size_t edits);

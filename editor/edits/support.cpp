@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <set>
 
 #include "mesh_ops/base/polar.h"
@@ -166,6 +167,18 @@ Box subtree_bounds(const Scene& scene, NodeId id) {
     part.roots.push_back(std::make_shared<const Node>(std::move(root)));
   }
   return world_bounds(part);
+}
+
+double lowest_visible(const Scene& scene) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (!placed.visible || !placed.node->object) continue;
+    for (const TextureSet& set : placed.node->object->sets)
+      for (const Face& face : set.soup.faces())
+        for (const std::uint32_t vertex : face)
+          if (const double y = (placed.to_world * set.soup.positions()[vertex]).y(); y < lowest) lowest = y;
+  }
+  return lowest;
 }
 
 Box selection_bounds(const PlacedNode& placed) {

@@ -55,6 +55,8 @@ Scene with_only(const Scene& scene, const std::vector<NodeRef>& nodes);
 
 /// World box of the triangles of a node and its children; hidden children do not count.
 Box subtree_bounds(const Scene& scene, NodeId id);
+/// Least world y of the triangles of visible nodes; infinity if there are none.
+double lowest_visible(const Scene& scene);
 /// World box of a node's selected triangles.
 Box selection_bounds(const PlacedNode& placed);
 

@@ -101,6 +101,26 @@ std::string selected_line(const char* op, const Scene& scene) {
   return fmt::format("{}: {} of {} triangles selected{}", op, selected, triangles, rest);
 }
 
+// Notes that a keyframed bend of the node moves other triangles than before, because its stored selection has changed.
+void add_notes_of_bends(const Node& before, const Node& after, std::vector<std::string>& lines) {
+  if (!after.motion || after.object != before.object) return;
+  for (const auto& [name, bend] : after.motion->bends) {
+    const auto was = before.saved_selections.find(bend.selection), now = after.saved_selections.find(bend.selection);
+    if (was == before.saved_selections.end()) continue;
+    const bool gone = now == after.saved_selections.end();
+    if (gone || *now->second != *was->second)
+      lines.push_back(fmt::format("note: the keyframed bend \"{}\" of \"{}\" {} the stored selection \"{}\"", name,
+                                  after.name, gone ? "needs" : "now moves the triangles of", bend.selection) +
+                      (gone ? ", which is gone: films fail until it is stored again" : ""));
+  }
+}
+
+bool is_inside(const Scene& scene, NodeId node, NodeId group) {
+  for (NodeId up = parent_of(scene, node); up != NodeId::none; up = parent_of(scene, up))
+    if (up == group) return true;
+  return false;
+}
+
 }  // namespace
 
 Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress) {
@@ -120,6 +140,20 @@ Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress
       lines.push_back(fmt::format("note: films still move \"{}\" by its keyframes; set one (key) to move it there too",
                                   placed.node->name));
   }
+  // Nor do they move nodes by the keyframes of groups that these have left.
+  for (const PlacedNode& placed : placed_nodes(outcome.scene)) {
+    if (placed.node->object == nullptr || !find(scene, placed.node->id)) continue;
+    for (NodeId up = parent_of(scene, placed.node->id); up != NodeId::none; up = parent_of(scene, up)) {
+      const NodePtr group = find(scene, up);
+      if (!group->motion || group->motion->place.empty() || is_inside(outcome.scene, placed.node->id, up) ||
+          !find(outcome.scene, up))
+        continue;
+      lines.push_back(fmt::format("note: films no longer move \"{}\" by the keyframes of \"{}\", which it has left",
+                                  placed.node->name, group->name));
+    }
+  }
+  for (const PlacedNode& placed : placed_nodes(outcome.scene))
+    if (const NodePtr before = find(scene, placed.node->id)) add_notes_of_bends(*before, *placed.node, lines);
   if (edit.type().selects) lines.push_back(selected_line(edit.type().op, outcome.scene));
   for (std::string& line : outcome.report.lines) line.insert(0, std::string(edit.type().op) + ": ");
   outcome.report.lines.insert(outcome.report.lines.begin(), lines.begin(), lines.end());

@@ -143,8 +143,17 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
     lock();
     const nlohmann::json before = record_in(folder_);
     const std::vector<fs::path> pictures = film_pictures(folder_, before);
-    if (before.is_object() && before.value("content", "") == content) return;
-    if (!pictures.empty() && (!replaces || !before.value("video", false)))
+    const bool of_video = before.is_object() && before.value("video", false);
+    if (before.is_object() && before.value("content", "") == content) {
+      if (replaces && !of_video)
+        throw FileError(folder_,
+                        "holds the pictures of this film because they were asked for, and would be removed after the "
+                        "video is made; choose another name for the video");
+      // From now on the pictures are wanted themselves.
+      if (!replaces && of_video) write_record(count, content, false, sources);
+      return;
+    }
+    if (!pictures.empty() && (!replaces || !of_video))
       throw FileError(folder_,
                       "holds pictures of another film: the scene, the way or the options differ; choose another "
                       "folder, or remove this one first");
@@ -157,9 +166,14 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
   fs::create_directories(folder_, error);
   if (error) throw FileError(folder_, "cannot be created: " + error.message());
   if (!lock_) lock();
+  write_record(count, content, replaces, sources);
+}
+
+void PictureFolder::write_record(std::size_t count, const std::string& content, bool of_video,
+                                 const SourceGuard& sources) const {
   write_file_atomically(
       folder_ / record,
-      nlohmann::json{{mark, 1}, {"content", content}, {"count", count}, {"extension", extension_}, {"video", replaces}}
+      nlohmann::json{{mark, 1}, {"content", content}, {"count", count}, {"extension", extension_}, {"video", of_video}}
               .dump(1) +
           "\n",
       sources);

@@ -19,9 +19,9 @@ std::uint64_t picture_hash(const Scene& scene, const Progress& progress = {});
 /// interrupted goes on.
 class PictureFolder {
  public:
-  /// Opens or creates the folder of a film of `count` pictures. `content`: text that identifies the film. If the folder
-  /// holds pictures of another one, they are removed if `replaces` and they are of a video. Throws FileError if they
-  /// are not, if the folder has other files, and if another run writes to it.
+  /// Opens or creates the folder of a film of `count` pictures. `content`: text that identifies the film. `replaces`:
+  /// the pictures are those of a video, and will be removed; so are those of another film, if they are of a video too.
+  /// Throws FileError if they are not, if the folder has other files, and if another run writes to it.
   PictureFolder(std::filesystem::path folder, std::string extension, std::size_t count, const std::string& content,
                 bool replaces, const SourceGuard& sources);
   /// Removes the pictures, film.json and the folder. Throws FileError if it has other files by now.
@@ -35,8 +35,9 @@ class PictureFolder {
   std::size_t removed() const { return removed_; }  ///< number of pictures of another film that were removed
 
  private:
-  // Locks the folder, or throws FileError if another run writes to it.
+  /// Locks the folder, or throws FileError if another run writes to it.
   void lock();
+  void write_record(std::size_t count, const std::string& content, bool of_video, const SourceGuard& sources) const;
 
   std::filesystem::path folder_;
   std::optional<FolderLock> lock_;

@@ -316,7 +316,7 @@ class Document:
         view: name of the stored view that the camera takes
         degrees: bends the node by this angle at that time (degrees)
         track: name of the bend; a node can have several
-        selection: bend: only triangles of this stored selection; a bend keeps its region and axis from keyframe to keyframe unless they are given again
+        selection: bend: only triangles of this stored selection; a bend keeps its region and axis from keyframe to keyframe, until one of selection, box, falloff, axis, origin, spine, from, to and direction is given other than its default: then all of them are taken from that edit, for all keyframes of the bend
         box: bend: only triangles whose centre is inside
         frame: coordinates of the box: world; node: object space; bounds: relative to the object's box, 0 to 1
         falloff: bend: width of the soft border; 0: hard (scene units)

@@ -123,7 +123,7 @@ std::string quoted(const std::string& text) {
 // Plots the table's column y over column `x` into BASE.svg and BASE.png. Writes nothing if no row has finite values for
 // both.
 void write_plot(const Study& study, const StudyTable& table, std::size_t x, const std::string& base,
-                const SourceGuard& guard) {
+                const std::function<void(const std::string& path, const std::string& bytes)>& write) {
   std::string data, points;
   std::vector<StudyTable::Row> rows;
   std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(rows), [&](const StudyTable::Row& row) {
@@ -158,8 +158,7 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
   for (const auto& [terminal, extension] :
        {std::pair{fmt::format("svg size {},{} dynamic background rgb 'white'", width, height), "svg"},
         std::pair{fmt::format("pngcairo size {},{}", width, height), "png"}})
-    write_file_atomically(base + "." + extension,
-                          run_gnuplot(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)), guard);
+    write(base + "." + extension, run_gnuplot(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)));
 }
 
 }  // namespace
@@ -193,6 +192,7 @@ void write_line_plot(const std::string& title, const std::string& x, const std::
 
 std::filesystem::path own_folder(const StudyInput& input, const std::string& study) {
   const std::filesystem::path folder = input.folder / study, marker = folder / "study.json";
+  input.sources.check_folder(folder);
   const std::string contents = fmt::format("{{\"software\": \"Rebake\", \"study\": \"{}\"}}\n", study);
   std::error_code error;
   if (std::filesystem::exists(folder, error) &&
@@ -266,20 +266,22 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
     csv += '\n';
   }
   const std::string base = (folder / study.name).string();
-  write_file_atomically(base + ".csv", csv, guard);
+  // The record names each plot before it is written, so that a run that ends between leaves no plot that the next run
+  // refuses, and no other file counts as a plot.
+  nlohmann::json plots = nlohmann::json::object();
   const auto record = [&] {
-    nlohmann::json plots = nlohmann::json::object();
-    std::error_code error;
-    for (const char* ending : endings_of_plots)
-      if (const std::filesystem::path plot = base + ending; std::filesystem::exists(plot, error))
-        plots[plot.filename().string()] = hash_at(plot);
     write_file_atomically(base + ".json", nlohmann::json{{"software", "Rebake"}, {"plots", plots}}.dump(), guard);
   };
-  // A run that ends between a plot and its record must not leave plots that the next run refuses.
-  std::filesystem::remove(base + ".json");
-  write_plot(study, table, table.x, base, guard);
-  if (table.second_x) write_plot(study, table, *table.second_x, base + "-2", guard);
+  for (const char* ending : endings_of_plots) std::filesystem::remove(base + ending);
   record();
+  write_file_atomically(base + ".csv", csv, guard);
+  const auto write = [&](const std::string& path, const std::string& bytes) {
+    plots[std::filesystem::path(path).filename().string()] = hash_text(content_hash(bytes));
+    record();
+    write_file_atomically(path, bytes, guard);
+  };
+  write_plot(study, table, table.x, base, write);
+  if (table.second_x) write_plot(study, table, *table.second_x, base + "-2", write);
 }
 
 }  // namespace rebake

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh_ops/base/progress.h"
+#include "mesh_ops/base/source_guard.h"
 #include "mesh_ops/scene/scene.h"
 #include "render/picture.h"
 
@@ -58,7 +59,8 @@ struct StudyInput {
   std::function<void(const std::string&)> say = [](const std::string&) {};  ///< outputs a message of one line
   DprtOptions dprt = {};
   RepresentationsOptions representations = {};
-  bool quick = false;  ///< smaller sizes, for studies that take long
+  bool quick = false;        ///< smaller sizes, for studies that take long
+  SourceGuard sources = {};  ///< files that the study reads
 };
 
 /// A subject of `rebake study`.
@@ -142,7 +144,7 @@ void write_line_plot(const std::string& title, const std::string& x, const std::
                      const std::vector<PlottedLine>& lines, const std::string& base);
 
 /// The folder for further files of a study, FOLDER/`study`, with a marker in it. Throws FileError if there is something
-/// of that name that the study did not make.
+/// of that name that the study did not make, or if the study reads something in it.
 std::filesystem::path own_folder(const StudyInput& input, const std::string& study);
 
 /// Creates the folder and checks all outputs, so that problems are found before the measurement. Throws FileError.

@@ -26,14 +26,13 @@ Vec3 BorderPiece::nearest(const Vec3& p) const {
 void fade_out(const std::vector<Vec3>& rest, const std::vector<BorderPiece>& border, double falloff,
               DeformedPoints& deformed) {
   if (border.empty()) return;
-  // Scaled to a box of size 1, so that no squared distance overflows.
+  // Scaled to a border of size 1, so that squared distances overflow only where the falloff does not reach, and a point
+  // far away does not blur the border.
   Box box;
   for (const BorderPiece& piece : border) {
     box.extend(piece.begin);
     box.extend(piece.end);
   }
-  for (const Vec3& p : rest)
-    if (p.allFinite()) box.extend(p);
   const double size = box.sizes().maxCoeff() > 0 ? box.sizes().maxCoeff() : 1;
   const auto point = [&](const Vec3& p) {
     const Vec3 q = (p - box.min()) / size;

@@ -145,6 +145,23 @@ std::vector<TextureSet> sets_without(const BakedObject& object, const TriangleSe
   return sets;
 }
 
+// The kept triangles around a loop, numbered without the removed ones. `number`: the new number of each triangle.
+std::vector<std::uint32_t> triangles_around(const HoleLoop& loop, const std::vector<std::uint32_t>& number) {
+  std::vector<std::uint32_t> around;
+  for (const auto& corners : loop.corners)
+    for (const HoleLoop::Corner& corner : corners) around.push_back(number[corner.triangle]);
+  std::sort(around.begin(), around.end());
+  around.erase(std::unique(around.begin(), around.end()), around.end());
+  return around;
+}
+
+std::vector<std::uint32_t> numbers_without(const TriangleSet& removed) {
+  std::vector<std::uint32_t> number(removed.size());
+  std::uint32_t next = 0;
+  for (std::size_t f = 0; f < removed.size(); ++f) number[f] = removed[f] == 0 ? next++ : next;
+  return number;
+}
+
 // Removes the flagged triangles, and closes the loops of at most `longest` edges.
 FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const HoleLoops& borders, std::size_t longest,
                    const Progress& progress) {
@@ -161,6 +178,7 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
   std::vector<HolePatch> patches;
   std::vector<PatchFeatures> features;
   ColorSteps steps;
+  const std::vector<std::uint32_t> number = numbers_without(removed);
   for (const HoleLoop& loop : borders.loops) {
     progress.at("filling",
                 static_cast<double>(result.holes + result.unfilled) / static_cast<double>(borders.loops.size()));
@@ -184,6 +202,7 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
                          .cross(patch.vertices[face[2]] - patch.vertices[face[0]])
                          .norm() /
                      2;
+    result.around.push_back(triangles_around(loop, number));
     patches.push_back(std::move(patch));
     features.push_back(std::move(own));
   }
@@ -191,7 +210,7 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
   auto made = std::make_shared<BakedObject>(object);
   made->sets = sets_without(object, removed);
   if (!patches.empty()) {
-    made->sets.push_back(textured_patches(patches, features, texel, code));
+    made->sets.push_back(textured_patches(patches, features, texel, code, result.hole_of));
     result.texels = made->sets.back().texels->opaque_count();
   }
   if (made->sets.empty()) return result;

@@ -16,6 +16,10 @@ struct FilledHoles {
   /// patches continue from there, seen along the patches' normals.
   double color_step = 0;
   std::size_t open_edges = 0, unfilled = 0;  ///< border edges of no loop; loops that were not triangulated
+  /// Per triangle of the patches: the closed hole that it belongs to.
+  std::vector<std::size_t> hole_of;
+  /// Per closed hole: the triangles around it, numbered without the removed ones.
+  std::vector<std::vector<std::uint32_t>> around;
 };
 
 /// Removes the flagged triangles and closes the holes that they leave. Surfaces continue smoothly (hole_patch()).

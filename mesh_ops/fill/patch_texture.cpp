@@ -3,6 +3,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "mesh_ops/base/shelf_packer.h"
@@ -11,7 +12,7 @@ namespace rebake {
 
 namespace {
 
-constexpr int widest_page = 4096, widest_cell = 64;
+constexpr int widest_page = 4096, highest_page = 16384, widest_cell = 64;
 
 // Sum of 1 / length per edge of the patch; an edge of two triangles counts twice.
 std::vector<Eigen::Triplet<double>> edge_weights(const HolePatch& patch) {
@@ -71,13 +72,22 @@ PatchFeatures harmonic_features(const HolePatch& patch,
   return features;
 }
 
-TextureSet textured_patches(const std::vector<HolePatch>& patches, const std::vector<PatchFeatures>& features,
-                            double texel, AlphaCode code) {
-  struct Cell {
-    std::size_t patch, face;
-    int side, x, y;
-  };
+namespace {
+
+// The square of texels of a triangle of a patch, of which it takes half.
+struct Cell {
+  std::size_t patch, face;
+  int side, x, y;
+};
+struct Cells {
   std::vector<Cell> cells;
+  int width = 0;
+  std::vector<ShelfPacker::Page> pages;
+};
+
+Cells packed_cells(const std::vector<HolePatch>& patches, double texel) {
+  Cells result;
+  std::vector<Cell>& cells = result.cells;
   for (std::size_t p = 0; p < patches.size(); ++p)
     for (std::size_t f = 0; f < patches[p].faces.size(); ++f) {
       const auto& v = patches[p].vertices;
@@ -90,14 +100,26 @@ TextureSet textured_patches(const std::vector<HolePatch>& patches, const std::ve
   std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.side > b.side; });
   double area = 0;
   for (const Cell& cell : cells) area += static_cast<double>(cell.side) * cell.side;
-  const int width = std::clamp(static_cast<int>(std::ceil(std::sqrt(area))), widest_cell, widest_page);
-  ShelfPacker packer(width, 16384);
+  result.width = std::clamp(static_cast<int>(std::ceil(std::sqrt(area))), widest_cell, widest_page);
+  ShelfPacker packer(result.width, highest_page);
   for (Cell& cell : cells) {
     const ShelfPacker::Place place = packer.add(cell.side, cell.side);
     cell.x = place.x;
     cell.y = place.y;
   }
-  const int height = packer.pages().front().height;
+  result.pages = packer.pages();
+  return result;
+}
+
+}  // namespace
+
+TextureSet textured_patches(const std::vector<HolePatch>& patches, const std::vector<PatchFeatures>& features,
+                            double texel, AlphaCode code, std::vector<std::size_t>& patch_of) {
+  Cells packed = packed_cells(patches, texel);
+  // All in one texture: larger texels if it would be too high.
+  for (double larger = texel; packed.pages.size() > 1;) packed = packed_cells(patches, larger *= std::numbers::sqrt2);
+  const std::vector<Cell>& cells = packed.cells;
+  const int width = packed.width, height = packed.pages.front().height;
   // Unused texels repeat the first feature vector, because some formats have no holes.
   const auto bytes_of = [](const std::array<double, 8>& values) {
     Texel made;
@@ -131,6 +153,7 @@ TextureSet textured_patches(const std::vector<HolePatch>& patches, const std::ve
     for (const auto& [x, y] : {std::pair(0, 0), std::pair(last, 0), std::pair(0, last)})
       uvs.emplace_back((cell.x + x + 0.5) / width, 1 - (cell.y + y + 0.5) / height);
     faces.push_back({first, first + 1, first + 2});
+    patch_of.push_back(cell.patch);
   }
   const FeatureTexture texture = FeatureTexture::from_rows(width, height, code, [&](int y, Texel* row) {
     std::copy_n(&texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(width)], width, row);

@@ -105,7 +105,8 @@ Scene without_bends(const Scene& scene, std::vector<std::string>* bent) {
   return result;
 }
 
-std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout, bool* reordered) {
+std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout, bool* reordered,
+                                    std::vector<std::string>* lost_members) {
   if (reordered != nullptr) *reordered = false;
   struct Group {
     std::string name;
@@ -147,7 +148,10 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
         groups.push_back(std::move(group));
         found = &groups.back();
       } else {
-        found->object.other_members.insert(object.other_members.begin(), object.other_members.end());
+        for (const auto& [key, value] : object.other_members)
+          if (const auto [known, added] = found->object.other_members.emplace(key, value);
+              !added && known->second != value && lost_members != nullptr)
+            lost_members->push_back(fmt::format("\"{}\" of \"{}\"", key, placed.node->name));
         if (found->object.origin != object.origin) found->object.origin = nullptr;
         if (found->object.dialect != object.dialect) found->object.dialect = {};
         if (reordered != nullptr && found != &groups.back()) *reordered = true;
@@ -172,13 +176,51 @@ std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> la
   return nodes;
 }
 
+void add_notes_of_merging(bool reordered, const std::vector<std::string>& lost_members,
+                          std::vector<std::string>& notes) {
+  if (reordered)
+    notes.emplace_back(
+        "objects with the same decoder are now drawn together: where surfaces of two objects coincide exactly, the "
+        "other of them may show");
+  if (!lost_members.empty())
+    notes.push_back(
+        fmt::format("mlp.json holds one value of each member; these are lost: {}", fmt::join(lost_members, ", ")));
+}
+
+void add_notes_of_nodes(const Scene& scene, std::vector<std::string>& notes) {
+  bool locked = false, stored = false;
+  for (const PlacedNode& placed : placed_nodes(scene)) {
+    if (placed.node->object && !placed.visible)
+      notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
+    locked = locked || placed.node->locked;
+    stored = stored || !placed.node->saved_selections.empty();
+  }
+  if (locked) notes.emplace_back("locks of nodes are not exported; save keeps them");
+  if (stored) notes.emplace_back("stored selections are not exported; a project keeps them");
+}
+
+void add_notes_of_left_out(const Scene& scene, bool one_folder, std::vector<std::string>& notes) {
+  add_notes_of_nodes(scene, notes);
+  if (has_keyframes(scene))
+    notes.emplace_back("keyframes are not exported; save keeps them, and glTF has them as animations");
+  if (!one_folder) {
+    if (scene.light) notes.emplace_back("light settings are not exported, which need all nodes; save keeps them");
+    return;
+  }
+  if (!scene.background.isOnes(0)) notes.emplace_back("the format has no background: viewers show white");
+  if (!scene.views.empty()) notes.emplace_back("the format has no named views: they are not exported");
+  if (scene.ground != Ground{}) notes.emplace_back("the format has no ground: it is not exported");
+  if (scene.light) notes.emplace_back("the format has no light settings: they are not exported");
+}
+
 ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
                           const Progress& progress) {
   bool reordered = false;
   std::vector<std::string> bent;
   std::vector<std::string> coded;
+  std::vector<std::string> lost_members;
   const std::vector<Node> nodes =
-      merged_for_export(without_bends(with_networks(scene, &coded), &bent), options.layout, &reordered);
+      merged_for_export(without_bends(with_networks(scene, &coded), &bent), options.layout, &reordered, &lost_members);
   if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
   for (const Node& node : nodes)
     if (node.object->decoder->rule != ColorRule::network)
@@ -189,33 +231,20 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
   ExportReport report;
   report.folders = nodes.size();
   report.one_folder = nodes.size() == 1;
-  for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->object && !placed.visible)
-      report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
   if (!bent.empty())
     report.notes.push_back(
         fmt::format("the format cannot store how bends rotate colours: {} keeps the colours from before the bend; save "
                     "keeps the rotations",
                     fmt::join(bent, ", ")));
-  if (reordered)
-    report.notes.emplace_back(
-        "objects with the same decoder are now drawn together: where surfaces of two objects coincide exactly, the "
-        "other of "
-        "them "
-        "may show");
+  add_notes_of_merging(reordered, lost_members, report.notes);
   if (!coded.empty())
     report.notes.push_back(fmt::format(
         "plain colours are stored as logits: up to 1/255 off, and more at outlines and where a pixel mixes colours: {}",
         fmt::join(coded, ", ")));
-  if (has_keyframes(scene))
-    report.notes.emplace_back("keyframes are not exported; save keeps them, and glTF has them as animations");
+  add_notes_of_left_out(scene, report.one_folder, report.notes);
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   if (report.one_folder) {
     const BakedObject& object = *nodes.front().object;
-    if (!scene.background.isOnes(0)) report.notes.emplace_back("the format has no background: viewers show white");
-    if (!scene.views.empty()) report.notes.emplace_back("the format has no named views: they are not exported");
-    if (scene.ground != Ground{}) report.notes.emplace_back("the format has no ground: it is not exported");
-    if (scene.light) report.notes.emplace_back("the format has no light settings: they are not exported");
     if (object.axes == Axes::forward)
       report.notes.emplace_back(
           "the format does not record that this is a forward-facing scene: open it with --axes forward");
@@ -226,8 +255,6 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     Scene merged;
     merged.background = scene.background;
     merged.ground = scene.ground;
-    if (scene.light)
-      report.notes.emplace_back("light settings are not exported, which need all nodes; save keeps them");
     merged.views = scene.views;
     std::vector<std::string> taken;
     std::map<const BakedObject*, std::string> folder_of;

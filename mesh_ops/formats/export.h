@@ -34,9 +34,19 @@ struct ExportReport {
 /// Merges the visible objects of a scene as far as the format stays exact: positions in world space, rotations folded
 /// into decoder weights. Nodes whose folded decoders are equal share an object. Triangles that edits rotated relative
 /// to their object are grouped by rotation. No triangle may be bent (see without_bends). `layout`: for all objects;
-/// empty: each keeps its own, and only objects of the same layout merge. Sets `reordered`, if not null, to whether
-/// objects are drawn in another order than before.
-std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout, bool* reordered = nullptr);
+/// empty: each keeps its own, and only objects of the same layout merge. If not null, sets `reordered` to whether
+/// objects are drawn in another order than before, and appends to `lost_members` the unknown members of mlp.json
+/// (BakedObject::other_members) of which another object has another value.
+std::vector<Node> merged_for_export(const Scene& scene, std::optional<Layout> layout, bool* reordered = nullptr,
+                                    std::vector<std::string>* lost_members = nullptr);
+
+/// Appends sentences about what merged_for_export() changed.
+void add_notes_of_merging(bool reordered, const std::vector<std::string>& lost_members,
+                          std::vector<std::string>& notes);
+/// Appends sentences about what exports leave out of nodes: hidden ones, locks and stored selections.
+void add_notes_of_nodes(const Scene& scene, std::vector<std::string>& notes);
+/// As add_notes_of_nodes(), and about keyframes, and in `one_folder` background, views, ground and light settings.
+void add_notes_of_left_out(const Scene& scene, bool one_folder, std::vector<std::string>& notes);
 
 /// Makes a scene that the published format can represent. Bent triangles, whose corners have different rotations, get
 /// the most common rotation of their object, or the mean if all are bent. Whole triangles keep their rotations; nearly

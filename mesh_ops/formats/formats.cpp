@@ -42,9 +42,9 @@ ExportReport write_rebake(const Scene& scene, const fs::path& folder, const Expo
   if (options.layout)
     throw FieldError("layout", "does not apply to Rebake scenes: every object keeps its own; leave it out");
   ExportReport report;
-  report.preserves_scene = true;
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   report.notes = save_scene_folder(scene, out, progress);
+  report.preserves_scene = report.notes.empty();
   out.commit();
   return report;
 }
@@ -68,8 +68,10 @@ ExportReport write_nerf2mesh(const Scene& scene, const fs::path& folder, const E
     node.to_parent = nerf2mesh_to_y_up().inverse(Eigen::Isometry) * node.to_parent;
     turned.roots.push_back(std::make_shared<const Node>(std::move(node)));
   }
-  std::vector<std::string> bent;
-  const std::vector<Node> nodes = merged_for_export(without_bends(turned, &bent), std::nullopt);
+  std::vector<std::string> bent, lost_members;
+  bool reordered = false;
+  const std::vector<Node> nodes =
+      merged_for_export(without_bends(turned, &bent), std::nullopt, &reordered, &lost_members);
   if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
   if (nodes.size() > 1)
     throw EditError(
@@ -82,11 +84,8 @@ ExportReport write_nerf2mesh(const Scene& scene, const fs::path& folder, const E
         "the format cannot store how bends rotate colours: {} keeps the colours from before the bend; save keeps the "
         "rotations",
         fmt::join(bent, ", ")));
-  for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->object && !placed.visible)
-      report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
-  if (has_keyframes(scene))
-    report.notes.emplace_back("keyframes are not exported; save keeps them, and glTF has them as animations");
+  add_notes_of_merging(reordered, lost_members, report.notes);
+  add_notes_of_left_out(scene, true, report.notes);
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   write_nerf2mesh_folder(out, *nodes.front().object, report.notes, progress);
   out.commit();
@@ -154,6 +153,11 @@ constexpr Format table[] = {
 }  // namespace
 
 std::string folder_title(const fs::path& path) { return absolute_path(scene_root(path)).filename().string(); }
+
+std::string scene_title(const fs::path& scene) {
+  std::error_code error;
+  return fs::is_regular_file(scene, error) ? scene.stem().string() : folder_title(scene);
+}
 
 std::span<const Format> formats() { return table; }
 

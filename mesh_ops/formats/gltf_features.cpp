@@ -41,7 +41,12 @@ class FeatureReader {
     MlpFile file = read_mlp_json(value.at("decoder").dump(), document_.file());
     file.decoder.rule = static_cast<ColorRule>(word(document_, value.at("rule"), rule_words));
     made->decoder = std::make_shared<const Decoder>(std::move(file.decoder));
-    made->other_members = std::move(file.others);
+    // Earlier versions wrote them among those of the decoder.
+    made->other_members = value.contains("members") ? value.at("members").get<std::map<std::string, std::string>>()
+                                                    : std::move(file.others);
+    for (const auto& [key, text] : made->other_members)
+      if (!json::accept(text))
+        document_.fail(fmt::format("{} has the member \"{}\", which is not JSON", gltf_features_extension, key));
     made->axes = word(document_, value.at("axes"), std::array{"360", "forward"}) == 1 ? Axes::forward : Axes::y_up;
     made->layout = static_cast<Layout>(word(document_, value.at("layout"), layout_words));
     made->dialect.half_direction = value.value("halfDirection", false);
@@ -114,7 +119,7 @@ class FeatureReader {
 
 json object_json(const BakedObject& object, const json& sets) {
   const Dialect& dialect = object.dialect;
-  json made = {{"decoder", json::parse(write_mlp_json({*object.decoder, std::nullopt, object.other_members}))},
+  json made = {{"decoder", json::parse(write_mlp_json({*object.decoder, std::nullopt, {}}))},
                {"rule", rule_words[static_cast<std::size_t>(object.decoder->rule)]},
                {"axes", object.axes == Axes::forward ? "forward" : "360"},
                {"layout", layout_words[static_cast<std::size_t>(object.layout)]},
@@ -124,6 +129,8 @@ json object_json(const BakedObject& object, const json& sets) {
                                  {dialect.bgr, "bgr"},
                                  {dialect.no_holes, "noHoles"}})
     if (set) made[key] = true;
+  // As text, which keeps the spelling of numbers.
+  if (!object.other_members.empty()) made["members"] = object.other_members;
   if (dialect.linear != 0) made["linear"] = dialect.linear;
   if (dialect.alpha) made["alphaCode"] = *dialect.alpha == AlphaCode::plain ? "plain" : "halved";
   return made;

@@ -86,6 +86,11 @@ std::uint64_t content_hash_at(const fs::path& path) {
   return content_hash(all);
 }
 
+std::uint64_t output_hash_at(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) ? content_hash(read_file(path)) : content_hash_at(path);
+}
+
 void refuse_foreign_content(const fs::path& folder) {
   const auto refuse = [&](const fs::path& path) {
     throw FileError(folder, fmt::format("contains \"{}\", which is not part of its scene; choose a new or empty folder",
@@ -110,7 +115,9 @@ void refuse_foreign_content(const fs::path& folder) {
     const auto [found, first] = files_in.try_emplace(place);
     if (first)
       for (const Format& format : formats())
-        if (format.folder != nullptr && (place != folder || markers.contains(format.marker)))
+        // Object folders are no Rebake scenes.
+        if (format.folder != nullptr &&
+            (place == folder ? markers.contains(format.marker) : std::string_view(format.marker) != "scene.json"))
           found->second.merge(format.folder->own_files(place));
     return found->second.contains(file.filename().string());
   };

@@ -22,9 +22,13 @@ std::vector<std::filesystem::path> scene_files(const std::filesystem::path& fold
 /// Hash of the names and contents of scene_files(). `path`: see scene_root(). Throws FileError.
 std::uint64_t folder_hash(const std::filesystem::path& path);
 
-/// Hash of an input's or output's content: of the files of a scene folder, of the cameras of a camera file or folder
+/// Hash of an input's content: of the files of a scene folder, of the cameras of a camera file or folder
 /// (camera_hash), of all files of another folder, or of the bytes of another file. Throws FileError.
 std::uint64_t content_hash_at(const std::filesystem::path& path);
+
+/// Hash of an output, to notice any change of it: as content_hash_at(), but of the bytes of a file, also if it is a
+/// camera file. Throws FileError.
+std::uint64_t output_hash_at(const std::filesystem::path& path);
 
 /// Throws FileError if a folder that would be replaced contains anything that is not part of its scene, since it would
 /// be lost.

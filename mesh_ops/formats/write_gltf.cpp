@@ -530,9 +530,11 @@ ExportReport write_glb(const Scene& scene, const fs::path& file, const ExportOpt
   write_file_atomically(file, document.glb(), options.sources);
   ExportReport report;
   report.notes = document.notes();
-  for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.node->object && !placed.visible)
-      report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
+  if (!features) {
+    add_notes_of_nodes(scene, report.notes);
+    if (!scene.background.isOnes(0)) report.notes.emplace_back("the background is not exported; save keeps it");
+    if (scene.ground != Ground{}) report.notes.emplace_back("the ground is not exported; save keeps it");
+  }
   if (scene.light) report.notes.emplace_back("light that follows edits is not part of the colours, which are as baked");
   return report;
 }
@@ -546,13 +548,13 @@ ExportReport write_gltf(const Scene& scene, const fs::path& file, const ExportOp
 
 ExportReport write_gltf_features(const Scene& scene, const fs::path& file, const ExportOptions& options,
                                  const Progress& progress) {
-  ExportReport report = write_glb(visible_part(scene), file, options, progress, true);
+  const Scene visible = visible_part(scene);
+  ExportReport report = write_glb(visible, file, options, progress, true);
   const std::vector<std::string> lost = unsaved_parts(scene);
-  report.preserves_scene = lost.empty();
+  report.preserves_scene = lost.empty() && placed_nodes(visible).size() == placed_nodes(scene).size();
   report.notes.insert(report.notes.end(), lost.begin(), lost.end());
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (placed.node->object && !placed.visible) {
-      report.preserves_scene = false;
       report.notes.push_back(fmt::format("the hidden node \"{}\" is not exported; save keeps it", placed.node->name));
     }
     if (placed.node->object && !placed.node->object->bodies.empty() && scene.light) {

@@ -22,6 +22,8 @@ class Attribute {
   virtual std::shared_ptr<const Attribute> picked(const std::vector<std::uint32_t>& elements) const = 0;
   /// A copy padded with `before` neutral values in front and `behind` neutral values at the end.
   virtual std::shared_ptr<const Attribute> padded(std::size_t before, std::size_t behind) const = 0;
+  /// Whether `other` has the same type and values.
+  virtual bool equals(const Attribute& other) const = 0;
   /// Concatenation with `other`. Throws std::bad_cast if it has another type.
   virtual std::shared_ptr<const Attribute> followed_by(const Attribute& other) const = 0;
 
@@ -65,6 +67,10 @@ class Values final : public Attribute {
     values.resize(values.size() + behind, neutral());
     return std::make_shared<const Values>(std::move(values));
   }
+  bool equals(const Attribute& other) const override {
+    const auto* same = dynamic_cast<const Values*>(&other);
+    return same != nullptr && same->get() == values_;
+  }
   std::shared_ptr<const Attribute> followed_by(const Attribute& other) const override {
     std::vector<T> values = values_;
     const std::vector<T>& more = dynamic_cast<const Values&>(other).get();
@@ -96,6 +102,14 @@ class Attributes {
   Attributes picked(const std::vector<std::uint32_t>& elements) const;
   /// Attributes of `count` elements, followed by `other_count` elements with the attributes `other`.
   Attributes followed_by(std::size_t count, const Attributes& other, std::size_t other_count) const;
+
+  /// Whether both have the same names and values.
+  bool has_values(const Attributes& other) const {
+    return std::equal(entries_.begin(), entries_.end(), other.entries_.begin(), other.entries_.end(),
+                      [](const auto& a, const auto& b) {
+                        return a.first == b.first && (a.second == b.second || a.second->equals(*b.second));
+                      });
+  }
 
   auto begin() const { return entries_.begin(); }
   auto end() const { return entries_.end(); }

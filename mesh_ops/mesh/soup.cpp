@@ -131,7 +131,13 @@ std::vector<std::uint32_t> faces_of_united(const Soup& a, const Soup& b) {
 }
 
 Soup united(const Soup& a, const Soup& b) {
-  if (auto whole = reunited(a, b)) return std::move(*whole);
+  if (auto whole = reunited(a, b)) {
+    // Edits of the parts may have changed values per face, such as the numbers of bodies.
+    const Attributes faces = a.face_attributes()
+                                 .followed_by(a.faces().size(), b.face_attributes(), b.faces().size())
+                                 .picked(faces_of_united(a, b));
+    return whole->face_attributes().has_values(faces) ? std::move(*whole) : whole->with_face_attributes(faces);
+  }
   auto positions = std::make_shared<std::vector<Vec3>>(a.positions());
   auto uvs = std::make_shared<std::vector<Vec2>>(a.uvs());
   auto faces = std::make_shared<std::vector<Face>>(a.faces());

@@ -331,8 +331,10 @@ std::shared_ptr<const BakedObject> fitted_with_decoder(const BakedObject& object
         }));
   }
   made->decoder = std::make_shared<const Decoder>(fitted.decoder);
-  made->dialect = {};
-  made->other_members = {};
+  made->dialect.alpha.reset();
+  made->dialect.linear = 0;
+  made->dialect.no_holes = false;
+  if (object.decoder->rule != ColorRule::network) made->other_members = {};  // those of another format
   return made;
 }
 

@@ -33,7 +33,7 @@ struct Node {
   std::shared_ptr<const TriangleSet> selection;  ///< null if nothing is selected
   std::map<std::string, std::shared_ptr<const TriangleSet>> saved_selections;
   std::shared_ptr<const NodeMotion> motion;  ///< null without keyframes
-  std::vector<NodePtr> children;
+  std::vector<NodePtr> children;             ///< of groups only
 };
 
 /// Everything that users edit, as a value: copying is cheap, and functions never modify their argument.

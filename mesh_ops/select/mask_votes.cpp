@@ -127,9 +127,9 @@ MaskDecision decide(const MaskVotes& votes, double threshold) {
       none -= votes.votes[k][f];
       if (votes.votes[k][f] > most) most = votes.votes[k][f], best = k;
     }
-    if (most > 0 && most >= threshold * votes.seen[f]) decision.chosen[best][f] = 1;
+    if (most > 0 && static_cast<double>(most) / votes.seen[f] >= threshold) decision.chosen[best][f] = 1;
     const std::uint32_t inside = votes.seen[f] - none;
-    if (inside > 0 && inside >= threshold * votes.seen[f]) decision.any[f] = 1;
+    if (inside > 0 && static_cast<double>(inside) / votes.seen[f] >= threshold) decision.any[f] = 1;
     agreeing += std::max(most, none);
     total += votes.seen[f];
   }

@@ -118,10 +118,11 @@ ViewRay Projector::ray(int x, int y) const {
   return {eye_, aside + forward};
 }
 
-Vec3 Projector::eye_for(const Vec3& world) const {
-  if (!picture_.camera.orthographic()) return eye_;
+Vec3 Projector::start_for(const Vec3& world) const {
   const Vec3 back = rows_.row(2).transpose();
-  return world - back.dot(world - eye_) * back;
+  const double depth = -back.dot(world - eye_), near = std::min(picture_.camera.near_plane, depth);
+  if (picture_.camera.orthographic()) return world + (depth - near) * back;
+  return near > 0 ? Vec3(eye_ + near / depth * (world - eye_)) : eye_;
 }
 
 TriangleSet projected_triangles(const BakedObject& object, const Affine& to_world, const Projector& project,

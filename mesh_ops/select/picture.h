@@ -47,9 +47,8 @@ class Projector {
   bool operator()(const Vec3& world, At& at) const;
   /// Ray through a pixel's centre.
   ViewRay ray(int x, int y) const;
-  /// Viewpoint of a world point: the eye, or for an orthographic camera the point's projection to the image plane
-  /// through the eye.
-  Vec3 eye_for(const Vec3& world) const;
+  /// Where the line of sight to a world point begins: on the camera's near plane.
+  Vec3 start_for(const Vec3& world) const;
   const Camera& camera() const { return picture_.camera; }
 
  private:

@@ -3,6 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
 
 namespace rebake {
 
@@ -23,6 +26,7 @@ FrameTransform::FrameTransform(CoordinateFrame frame, const PlacedNode& placed) 
   radius_scale_ = box.diagonal().norm();
   relative_ = true;
   min_ = box.min();
+  extent_ = box.sizes();
   // If the box is flat along an axis, its only coordinate on that axis maps to 0.
   size_ = (box.sizes().array() > 0).select(box.sizes(), Vec3::Ones());
   from_object_ = size_.cwiseInverse().asDiagonal() * Eigen::Translation3d(-min_);
@@ -39,6 +43,45 @@ ObjectRegion region_of(const FrameTransform& points, const BoxRegion& box) {
     return (triangle.max().array() >= box.min.array()).all() && (triangle.min().array() <= box.max.array()).all();
   };
   return {inside, may_touch};
+}
+
+namespace {
+
+// Doubles in their order, as numbers.
+std::int64_t order_of(double value) {
+  const auto bits = std::bit_cast<std::int64_t>(value);
+  return bits < 0 ? std::numeric_limits<std::int64_t>::min() - bits : bits;
+}
+double double_of(std::int64_t order) {
+  return std::bit_cast<double>(order < 0 ? std::numeric_limits<std::int64_t>::min() - order : order);
+}
+
+// The least double for which `holds` is true; it must be true for infinity and for all doubles above one.
+template <class Holds>
+double least_double(Holds holds) {
+  std::int64_t low = order_of(-std::numeric_limits<double>::infinity()),
+               high = order_of(std::numeric_limits<double>::infinity());
+  if (holds(double_of(low))) return double_of(low);
+  const auto between = [&] { return static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low); };
+  while (between() > 1) {
+    const std::int64_t middle = low + static_cast<std::int64_t>(between() / 2);
+    (holds(double_of(middle)) ? high : low) = middle;
+  }
+  return double_of(high);
+}
+
+}  // namespace
+
+std::pair<Affine, Box> box_region_of(const FrameTransform& points, const BoxRegion& box) {
+  if (!points.is_relative()) return {points.affine_from_object(), Box(box.min, box.max)};
+  // Coordinates grow with the point, so each limit is one double.
+  Box limits;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto coordinate = [&](double value) { return points.from_object(Vec3(Vec3::Unit(axis) * value))[axis]; };
+    limits.min()[axis] = least_double([&](double value) { return coordinate(value) >= box.min[axis]; });
+    limits.max()[axis] = -least_double([&](double value) { return coordinate(-value) <= box.max[axis]; });
+  }
+  return {Affine::Identity(), limits};
 }
 
 ObjectRegion region_of(const FrameTransform& points, const SphereRegion& sphere) {

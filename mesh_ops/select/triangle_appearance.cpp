@@ -87,8 +87,8 @@ TriangleSet triangles_like(const PlacedNode& placed, const TriangleAppearance& m
     if (bounds.opacity && std::abs(static_cast<double>(t.opacity) - model.opacity) > *bounds.opacity) return;
     if (bounds.size || bounds.orientation) {
       const Vec3 area = shape.area(t);
-      // Rotated copies differ by rounding.
-      constexpr double room = 1 + 1e-9;
+      // Copies differ by the rounding of areas and normals, which are floats.
+      constexpr double room = 1 + rounding;
       if (bounds.size &&
           (area.norm() > room * model.area * *bounds.size || room * area.norm() * *bounds.size < model.area))
         return;

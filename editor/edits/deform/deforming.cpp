@@ -197,6 +197,24 @@ nlohmann::json Codec<Cage>::write(const Cage& value) {
   return object;
 }
 
+namespace {
+
+// A vertex in the units of a move's regions.
+Vec3 in_region(const Vec3& vertex, const Box& box, bool shares) {
+  if (!shares) return vertex;
+  Vec3 p = vertex;
+  for (int axis = 0; axis < 3; ++axis)
+    p[axis] = box.sizes()[axis] > 0 ? (p[axis] - box.min()[axis]) / box.sizes()[axis] : 0;
+  return p;
+}
+
+double distance_between(const Vec3& a, const Vec3& b, const Box& box, bool shares) {
+  const Vec3 way = a - b;
+  return (shares ? Vec3(way.cwiseProduct(box.sizes())) : way).stableNorm();
+}
+
+}  // namespace
+
 std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, bool shares) {
   std::vector<std::uint32_t> result;
   std::vector<std::uint8_t> taken(cage.vertices.size(), 0);
@@ -211,21 +229,17 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
     if (taken[v] != 0) result.push_back(v);
   if (move.points.ranges.empty()) {
     const Box box = surface_box(cage);
-    const double unit = shares ? box.diagonal().norm() : 1;
+    const double unit = shares ? box.diagonal().stableNorm() : 1;
     double least = std::numeric_limits<double>::infinity();
     std::optional<std::uint32_t> nearest;
     for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
-      Vec3 p = cage.vertices[v];
-      if (shares)
-        for (int axis = 0; axis < 3; ++axis)
-          p[axis] = box.sizes()[axis] > 0 ? (p[axis] - box.min()[axis]) / box.sizes()[axis] : 0;
+      const Vec3 p = in_region(cage.vertices[v], box, shares);
       if (move.box) {
         if ((p.array() >= move.box->min.array()).all() && (p.array() <= move.box->max.array()).all())
           result.push_back(v);
         continue;
       }
-      const Vec3 from_center = p - move.sphere->center;
-      const double away = (shares ? Vec3(from_center.cwiseProduct(box.sizes())) : from_center).norm();
+      const double away = distance_between(p, move.sphere->center, box, shares);
       if (away <= move.sphere->radius * unit) result.push_back(v);
       if (away < least) {
         least = away;
@@ -236,6 +250,12 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
     if (result.empty()) throw FieldError(move.box ? "box" : "sphere", "contains no cage vertex");
   }
   return result;
+}
+
+double distance_from_center(const CageMove& move, const Cage& cage, bool shares, std::uint32_t vertex) {
+  if (!move.sphere) return 0;
+  const Box box = surface_box(cage);
+  return distance_between(in_region(cage.vertices[vertex], box, shares), move.sphere->center, box, shares);
 }
 
 std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool shares) {
@@ -309,7 +329,7 @@ Cage cage_of(const CageSource& source, const DeformSet& set, const Progress& pro
   if (source.lattice.size() != 3) throw FieldError("lattice", "must be three whole numbers: cells along x, y and z");
   // Enlarges the box by 1 % of its diagonal, so that no point lies on the cage.
   Box box = set.bounds();
-  const Vec3 margin = Vec3::Constant(0.01 * box.diagonal().norm());
+  const Vec3 margin = Vec3::Constant(0.01 * box.diagonal().stableNorm());
   box = Box(Vec3(box.min() - margin), Vec3(box.max() + margin));
   try {
     return lattice_cage(box, source.lattice[0], source.lattice[1], source.lattice[2]);

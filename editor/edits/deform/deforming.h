@@ -87,6 +87,9 @@ struct Codec<CageMoves> {
 /// cage's box (0 … 1). Throws FieldError for a vertex number out of range and if there is no vertex.
 std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, bool shares);
 
+/// World distance of a cage vertex from the centre of the move's sphere; 0 if the move names vertices or a box.
+double distance_from_center(const CageMove& move, const Cage& cage, bool shares, std::uint32_t vertex);
+
 /// Positions of all cage vertices after the moves, applied one after another. Each move chooses its vertices by their
 /// original positions. Throws FieldError for non-finite results.
 std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool shares);

@@ -10,20 +10,39 @@
 
 namespace rebake {
 
+namespace {
+
+// The vertices that are fixed or moved. One that several regions contain follows that with the nearest centre; among
+// equally near ones the last, moved rather than fixed.
+std::vector<ConstrainedVertex> held_vertices(const HandlesDeform& edit, const Cage& cage) {
+  const bool shares = edit.target.frame == CoordinateFrame::bounds;
+  struct Hold {
+    Vec3 place;
+    double away;
+  };
+  std::map<std::uint32_t, Hold> held;
+  const auto hold = [&](const CageMove& move, const std::vector<Vec3>& places) {
+    for (const std::uint32_t v : points_of(move, cage, shares)) {
+      const double away = distance_from_center(move, cage, shares, v);
+      const auto [found, first] = held.try_emplace(v, Hold{places[v], away});
+      if (!first && away <= found->second.away) found->second = {places[v], away};
+    }
+  };
+  for (const CageMove& move : edit.fixed) hold(move, cage.vertices);
+  for (const CageMove& move : edit.moves) hold(move, moved_points({move}, cage, shares));
+  std::vector<ConstrainedVertex> places;
+  for (const auto& [vertex, one] : held) places.push_back({vertex, one.place});
+  return places;
+}
+
+}  // namespace
+
 Outcome apply(const Scene& scene, const HandlesDeform& edit, const Progress& progress) {
   if (edit.iterations < 1 || edit.iterations > 1000) throw FieldError("iterations", "must lie between 1 and 1000");
   if (edit.moves.empty()) throw FieldError("moves", "must contain at least one move");
   const DeformSet set = deform_set(scene, edit.target);
   const Cage cage = cage_of(edit.cage, set, progress);
-  const bool shares = edit.target.frame == CoordinateFrame::bounds;
-  const std::vector<Vec3> asked = moved_points(edit.moves, cage, shares);
-  std::map<std::uint32_t, Vec3> held;
-  for (const CageMove& move : edit.fixed)
-    for (const std::uint32_t v : points_of(move, cage, shares)) held.insert_or_assign(v, cage.vertices[v]);
-  for (const CageMove& move : edit.moves)
-    for (const std::uint32_t v : points_of(move, cage, shares)) held.insert_or_assign(v, asked[v]);
-  std::vector<ConstrainedVertex> places;
-  for (const auto& [vertex, place] : held) places.push_back({vertex, place});
+  const std::vector<ConstrainedVertex> places = held_vertices(edit, cage);
   const ConstrainedCage moved = as_rigid_as_possible(cage, places, edit.iterations, progress);
   std::vector<std::string> notes = cage_warnings(cage, moved.vertices);
   if (moved.free_components > 0)

@@ -54,15 +54,18 @@ Ground wanted_ground(const Scene& scene, const GroundEdit& edit) {
     return {Vec3::UnitY(), *edit.height};
   }
   if (edit.foot) {
-    const Box box = world_bounds(scene);
-    if (box.isEmpty()) throw EditError("nothing is visible, so there is no lowest point");
-    return {Vec3::UnitY(), box.min().y()};
+    const double lowest = lowest_visible(scene);
+    if (!std::isfinite(lowest)) throw EditError("nothing is visible, so there is no lowest point");
+    return {Vec3::UnitY(), lowest};
   }
   if (edit.selection && edit.nodes.empty()) return fitted(objects_with_selection(scene, std::nullopt));
   if (edit.selection) {
     std::vector<PlacedNode> nodes;
     for (const NodeRef& node : edit.nodes)
-      for (PlacedNode& placed : objects_with_selection(scene, node)) nodes.push_back(std::move(placed));
+      for (PlacedNode& placed : objects_with_selection(scene, node))
+        if (std::none_of(nodes.begin(), nodes.end(),
+                         [&](const PlacedNode& other) { return other.node->id == placed.node->id; }))
+          nodes.push_back(std::move(placed));
     return fitted(nodes);
   }
   if (edit.points.points.size() != 3)

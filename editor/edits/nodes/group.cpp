@@ -8,7 +8,8 @@ Scene apply(const Scene& scene, const Group& edit) {
   if (!edit.as.empty() && find(scene, edit.as) != nullptr)
     throw FieldError("as", "\"" + edit.as + "\" is already the name of another node; choose another name");
   Node group;
-  group.name = edit.as.empty() ? "group" : edit.as;
+  // Unlike all nodes that it will contain.
+  group.name = edit.as.empty() ? unique_name(scene, "group") : edit.as;
   Scene result = scene;
   for (const NodeRef& ref : edit.nodes) {
     if (!find_placed(result, ref.id))

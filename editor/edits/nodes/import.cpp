@@ -59,8 +59,8 @@ Outcome apply(const Scene& scene, const Import& edit, const Progress& progress) 
     result.camera_keys = read.camera_keys;
   if (take("its ground", read.ground != Ground{} && read.ground != scene.ground, scene.ground == Ground{}))
     set_ground(result, read.ground);
-  else if (const Box box = world_bounds(result); edit.ground && !box.isEmpty())
-    set_ground(result, {Vec3::UnitY(), box.min().y()});
+  else if (const double lowest = lowest_visible(result); edit.ground && std::isfinite(lowest))
+    set_ground(result, {Vec3::UnitY(), lowest});
   Report report;
   if (empty) report.lines.push_back(fmt::format("note: {}: contains no objects", edit.path));
   if (!taken.empty()) report.lines.push_back(fmt::format("{}: also imported {}", edit.path, fmt::join(taken, ", ")));

@@ -69,11 +69,9 @@ BendTrack track_of(const Scene& scene, const PlacedNode& placed, const Key& edit
   BendTrack track;
   track.selection = edit.selection;
   if (edit.box) {
-    const FrameTransform frame(edit.frame, placed);
-    const Vec3 origin = frame.from_object(Vec3::Zero());
-    for (int axis = 0; axis < 3; ++axis) track.to_box.linear().col(axis) = frame.from_object(Vec3::Unit(axis)) - origin;
-    track.to_box.translation() = origin;
-    track.box = Box(edit.box->min, edit.box->max);
+    const auto [to_box, box] = box_region_of(FrameTransform(edit.frame, placed), *edit.box);
+    track.to_box = to_box;
+    track.box = box;
   }
   track.falloff = edit.falloff;
   track.to_space = placed.to_world;
@@ -140,7 +138,12 @@ Outcome apply(const Scene& scene, const Key& edit) {
     } else {
       BendTrack track =
           known != motion.bends.end() && !states_region(edit) ? known->second : track_of(scene, placed, edit);
-      if (known != motion.bends.end()) track.degrees = known->second.degrees;
+      if (known != motion.bends.end()) {
+        track.degrees = known->second.degrees;
+        if (states_region(edit))
+          report.lines.push_back(
+              fmt::format("the bend \"{}\" has the region and axis of this edit for all its keyframes", edit.track));
+      }
       set_key(track.degrees, {edit.time, *edit.degrees, edit.interpolation});
       motion.bends[edit.track] = std::move(track);
     }
@@ -175,9 +178,11 @@ REBAKE_DESCRIBE_EDIT(
       visit("view", edit.view, Need::optional, "name of the stored view that the camera takes");
       visit("degrees", edit.degrees, Need::optional, "bends the node by this angle at that time", Unit::degrees);
       visit("track", edit.track, Need::optional, "name of the bend; a node can have several");
-      visit("selection", edit.selection, Need::optional,
-            "bend: only triangles of this stored selection; a bend keeps its region and axis from keyframe to keyframe "
-            "unless they are given again");
+      visit(
+          "selection", edit.selection, Need::optional,
+          "bend: only triangles of this stored selection; a bend keeps its region and axis from keyframe to keyframe, "
+          "until one of selection, box, falloff, axis, origin, spine, from, to and direction is given other than its "
+          "default: then all of them are taken from that edit, for all keyframes of the bend");
       visit("box", edit.box, Need::optional, "bend: only triangles whose centre is inside");
       visit("frame", edit.frame, Need::optional,
             "coordinates of the box: world; node: object space; bounds: relative to the object's box, 0 to 1");

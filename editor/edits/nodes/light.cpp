@@ -50,9 +50,11 @@ bool choose_effects(const std::vector<std::string>& words, SceneLight& light) {
   return true;
 }
 
-// The environment map; shared with the scene's present light if that has the same path and content.
+// The environment map; shared with the scene's present light if that has the same path and content, or if none is
+// named.
 std::shared_ptr<const LightPicture> picture_of(const LightEdit& edit, const Scene& scene) {
   if (edit.picture.empty()) {
+    if (edit.source == "picture" && scene.light && scene.light->picture) return scene.light->picture;
     if (edit.source == "picture") throw FieldError("picture", "is missing: give an equirectangular picture");
     if (!edit.content.empty()) throw FieldError("content", "is the hash of a picture, but picture is missing");
     return nullptr;
@@ -102,13 +104,16 @@ Scene apply(const Scene& scene, const LightEdit& edit) {
   return result;
 }
 
-LightEdit light_edit(const SceneLight& light) {
+LightEdit light_edit(const SceneLight& light, const Scene& scene) {
   LightEdit edit;
   edit.light = light;
   edit.source = source_words[static_cast<std::size_t>(light.source)];
   edit.budget = light.budget * 255;
   edit.sun_degrees = light.sun.radius * 180 / std::numbers::pi;
-  if (light.picture) edit.picture = light.picture->path, edit.content = light.picture->content;
+  // The picture that the scene has already is not named, so that its file need not exist when the edit is repeated.
+  const bool present = light.source == SceneLight::Source::picture && light.picture && scene.light &&
+                       scene.light->picture && *scene.light->picture == *light.picture;
+  if (light.picture && !present) edit.picture = light.picture->path, edit.content = light.picture->content;
   edit.picture_degrees = light.picture_rotation * 180 / std::numbers::pi;
   edit.effects.clear();
   if (light.self && light.cast && light.removed && light.highlights) {

@@ -33,7 +33,7 @@ const EditType& edit_type<LightEdit>();
 Scene apply(const Scene& scene, const LightEdit& edit);
 
 /// The edit that sets a scene's light to `light`.
-LightEdit light_edit(const SceneLight& light);
+LightEdit light_edit(const SceneLight& light, const Scene& scene);
 /// Title of a step: see EditType::title.
 std::string whole_title(const LightEdit& edit);
 

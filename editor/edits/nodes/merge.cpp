@@ -140,9 +140,39 @@ void give_selections(Node& node, const std::vector<SelectedSet>& sets, const std
   }
 }
 
+// The groups that move a node by keyframes.
+std::set<NodeId> moving_groups(const Scene& scene, NodeId node) {
+  std::set<NodeId> groups;
+  for (NodeId up = parent_of(scene, node); up != NodeId::none; up = parent_of(scene, up))
+    if (find(scene, up)->motion) groups.insert(up);
+  return groups;
+}
+
+// Throws EditError if films move the nodes differently. Keyframes of a node are relative to its parent and its space.
+void check_motions(const Scene& scene, const PlacedNode& first, const PlacedNode& part) {
+  const NodeMotion still;
+  const auto motion = [&](const PlacedNode& one) { return one.node->motion ? *one.node->motion : still; };
+  const bool same_space = parent_of(scene, first.node->id) == parent_of(scene, part.node->id) &&
+                          first.to_world.matrix() == part.to_world.matrix();
+  if (!(motion(part) == motion(first)) || (!motion(part).empty() && !same_space) ||
+      moving_groups(scene, first.node->id) != moving_groups(scene, part.node->id))
+    throw EditError(fmt::format(
+        "\"{}\" and \"{}\" have different keyframes, or the same in different places, so they cannot become "
+        "one object: remove the keyframes, or group the nodes instead",
+        first.node->name, part.node->name));
+}
+
+// Adds the members of a part's mlp.json that Rebake does not know. Reports those of which another value stays.
+void join_members(BakedObject& merged, const Node& part, Report& report) {
+  for (const auto& [key, value] : part.object->other_members)
+    if (const auto [known, added] = merged.other_members.emplace(key, value); !added && known->second != value)
+      report.lines.push_back(
+          fmt::format("note: \"{}\" has another value of \"{}\" in its mlp.json, which is lost", part.name, key));
+}
+
 }  // namespace
 
-Scene apply(const Scene& scene, const Merge& edit) {
+Outcome apply(const Scene& scene, const Merge& edit) {
   if (edit.nodes.size() < 2) throw FieldError("nodes", "must name at least two nodes");
   std::vector<PlacedNode> parts;
   for (const NodeRef& node : edit.nodes) {
@@ -157,13 +187,7 @@ Scene apply(const Scene& scene, const Merge& edit) {
           fmt::format("\"{}\" and \"{}\" have different decoders or axes, so they cannot become one object: "
                       "group them instead",
                       parts.front().node->name, part.node->name));
-    const NodeMotion still;
-    const auto motion = [&](const PlacedNode& one) { return one.node->motion ? *one.node->motion : still; };
-    if (!(motion(part) == motion(parts.front())))
-      throw EditError(
-          fmt::format("\"{}\" and \"{}\" have different keyframes, so they cannot become one object: remove "
-                      "the keyframes, or group the nodes instead",
-                      parts.front().node->name, part.node->name));
+    check_motions(scene, parts.front(), part);
     for (std::size_t k = 0; k + 1 < parts.size(); ++k)
       if (parts[k].node->id == part.node->id)
         throw FieldError("nodes", fmt::format("\"{}\" is named twice", part.node->name));
@@ -184,7 +208,13 @@ Scene apply(const Scene& scene, const Merge& edit) {
   merged->bodies.clear();
   const std::vector<std::string> selections = selection_names(parts);
   std::vector<SelectedSet> whole;
+  Report report;
   for (const PlacedNode& part : parts) {
+    join_members(*merged, *part.node, report);
+    if (part.visible != first.visible)
+      report.lines.push_back(fmt::format(
+          "note: \"{}\" was {}; as a part of \"{}\" it is {}", part.node->name, part.visible ? "visible" : "hidden",
+          edit.as.empty() ? first.node->name : edit.as, first.visible ? "visible" : "hidden"));
     if (part.node->object->origin != merged->origin) merged->origin = nullptr;
     std::vector<TextureSet> sets = sets_in_frame(part, first);
     join_bodies(merged->bodies, part, first, sets);
@@ -212,7 +242,7 @@ Scene apply(const Scene& scene, const Merge& edit) {
     give_selections(node, whole, selections);
   });
   for (std::size_t k = 1; k < parts.size(); ++k) result = without(result, parts[k].node->id);
-  return result;
+  return {std::move(result), std::move(report)};
 }
 
 REBAKE_DESCRIBE_EDIT(

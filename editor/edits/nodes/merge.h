@@ -16,6 +16,6 @@ struct Merge {
 template <>
 const EditType& edit_type<Merge>();
 
-Scene apply(const Scene& scene, const Merge& edit);
+Outcome apply(const Scene& scene, const Merge& edit);
 
 }  // namespace rebake

@@ -8,6 +8,7 @@ namespace rebake {
 struct Fill {
   static constexpr const char* op = "fill";
   static constexpr bool selects = true;
+  static constexpr bool needs_selection = true;
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   int at_most = 1000;           ///< largest component to add, in triangles
   WeldingField welding;

@@ -37,8 +37,9 @@ Scene apply(const Scene& scene, const SelectUnneeded& edit) {
     TriangleSet flags(object.triangle_count(), 0);
     if (edit.transparent) add(flags, transparent_triangles(object));
     if (edit.duplicates) add(flags, duplicate_triangles(object));
+    if (edit.unseen > 0)
+      add(flags, triangles_unseen(object, viewpoints_around(object.bounds(), edit.unseen, edit.distance)));
     std::vector<Viewpoint> eyes;
-    if (edit.unseen > 0) eyes = viewpoints_around(object.bounds(), edit.unseen, edit.distance);
     for (const Camera& camera : cameras) eyes.push_back(viewpoint_of(camera, placed.to_world.inverse()));
     if (!eyes.empty()) add(flags, triangles_unseen(object, eyes));
     return flags;

@@ -47,7 +47,7 @@ Outcome apply(const Scene& scene, const Erase& edit) {
     return erased(scene, targets, [&](const PlacedNode& placed) {
       const auto inside = [&region, &rays, to_world = placed.to_world](const Vec3& p) {
         const Vec3 world = to_world * p;
-        return region.contains(world) && !(rays && rays->blocked(region.projector().eye_for(world), world));
+        return region.contains(world) && !(rays && rays->blocked(region.projector().start_for(world), world));
       };
       const auto may_touch = [&region, to_world = placed.to_world](const std::array<Vec3, 3>& corners) {
         return region.may_touch({to_world * corners[0], to_world * corners[1], to_world * corners[2]});

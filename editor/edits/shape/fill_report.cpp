@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace rebake {
 
 void report_filling(const std::string& node, const FilledHoles& filled, Report& report) {
@@ -21,8 +23,13 @@ void report_filling(const std::string& node, const FilledHoles& filled, Report& 
 
 void set_filled(Node& node, const FilledHoles& filled) {
   for (auto& [stored, saved] : node.saved_selections) {
+    // A patch amid selected triangles belongs to them: keyframed bends move it with them.
+    std::vector<std::uint8_t> inside;
+    for (const std::vector<std::uint32_t>& around : filled.around)
+      inside.push_back(std::all_of(around.begin(), around.end(), [&](std::uint32_t f) { return (*saved)[f] != 0; }) ? 1
+                                                                                                                     : 0);
     TriangleSet longer = *saved;
-    longer.resize(filled.object->triangle_count(), 0);
+    for (const std::size_t hole : filled.hole_of) longer.push_back(inside[hole]);
     saved = std::make_shared<const TriangleSet>(std::move(longer));
   }
   node.object = filled.object;

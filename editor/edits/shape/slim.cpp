@@ -105,6 +105,13 @@ std::string loss_words(const Loss& loss) {
   return lost > 0 ? fmt::format("{}: colours of texels at {:.1f} dB PSNR", words, db_of(lost)) : words;
 }
 
+// Whether keyframes bend a part of the node that a stored selection names.
+bool needs_stored_selection(const PlacedNode& placed) {
+  if (!placed.node->motion) return false;
+  const auto& bends = placed.node->motion->bends;
+  return std::any_of(bends.begin(), bends.end(), [](const auto& bend) { return !bend.second.selection.empty(); });
+}
+
 struct Slimmed {
   std::shared_ptr<const BakedObject> object;  ///< null if no triangle is visible
   TriangleSet dropped;                        ///< flags of the removed triangles
@@ -147,7 +154,13 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
   made->bodies = before.bodies;
   Loss loss;
   if (edit.psnr > 0) loss = best_loss(*made, edit.psnr, progress);
-  if (auto smaller = packed(*made, loss.alike.representative_of)) {
+  const bool keeps_order = std::any_of(placements.begin(), placements.end(), needs_stored_selection);
+  auto smaller = keeps_order ? std::nullopt : packed(*made, loss.alike.representative_of);
+  if (keeps_order)
+    result.lines.emplace_back(
+        "texels stay where they are, because keyframes of a bend need a stored selection, which the order of triangles "
+        "belongs to");
+  if (smaller) {
     made->sets = std::move(*smaller);
     result.reordered = true;
   } else if (loss.alike.merged > 0) {
@@ -161,6 +174,11 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
     changed = changed || set.texels != was;
   }
   const std::size_t removed = count(unseen);
+  if (removed > 0 && std::any_of(placements.begin(), placements.end(), [](const PlacedNode& placed) {
+        return placed.node->motion && !placed.node->motion->bends.empty();
+      }))
+    result.lines.emplace_back(
+        "note: visibility was computed at rest; keyframed bends may show triangles that were removed");
   result.lines.push_back(
       fmt::format("{} of {} triangles removed ({} unseen, {} duplicates), opaque texels {} → {}, {:.2f} → "
                   "{:.2f} million texels in total",

@@ -90,7 +90,8 @@ class EditorWindow {
     }
     // The work is saved or discarded, so the journal is no longer needed.
     editor_.jobs.worker.cancel();
-    editor_.jobs.worker.start("end", [](Session& session) { session.document.discard_journal(); });
+    editor_.jobs.worker.start(
+        "end", [](Session& session) { session.document.discard_journal(); }, {}, {}, Worker::On::any_document);
     while (editor_.jobs.worker.busy()) window().wait(0.02);
     editor_.jobs.worker.set_prepare(nullptr);
     editor_.previews.set_prepare(nullptr);

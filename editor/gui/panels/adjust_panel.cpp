@@ -89,6 +89,13 @@ ui::Changed draw_field(const AdjustableField& field, json& object, double unit) 
 
 void AdjustPanel::draw(ToolContext& editor, const ImVec2& corner, const ImVec2& room) {
   const Snapshot& now = *editor.now;
+  // A drag ends with its step, for example by undo.
+  if (changing_ && (!of_ || now.done.empty() || now.done.back().value() != of_->value())) {
+    changing_ = false;
+    of_.reset();
+    ui::cancel_drag();
+    editor.drop_preview();
+  }
   if (now.steps_done == 0 || !now.before_last) return;
   const std::size_t edits = now.steps[now.steps_done - 1].edits;
   const Edit& last = now.done.back();
@@ -122,8 +129,10 @@ void AdjustPanel::draw(ToolContext& editor, const ImVec2& corner, const ImVec2& 
     const double size =
         std::max(1e-300, world_bounds(now.scene).isEmpty() ? 1 : world_bounds(now.scene).diagonal().norm());
     const double unit = std::pow(10, std::floor(std::log10(size)) - 2);
+    ImGui::PushID(last.value());  // a text box must not outlive its step either
     for (const AdjustableField& field : fields)
       if (const ui::Changed one = draw_field(field, object_, unit); one != ui::Changed::nothing) changed = one;
+    ImGui::PopID();
   }
   ImGui::End();
   if (changed == ui::Changed::cancelled) {
@@ -144,6 +153,7 @@ void AdjustPanel::draw(ToolContext& editor, const ImVec2& corner, const ImVec2& 
     editor.messages.fail(error.what());
     object_ = to_json(last);
     changing_ = false;
+    editor.drop_preview();
   }
 }
 

@@ -6,6 +6,8 @@
 
 #include "editor/edits/nodes/import.h"
 #include "editor/edits/scene_change.h"
+#include "editor/edits/select/select.h"
+#include "editor/edits/select/select_like.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/fields/field_info.h"
@@ -52,6 +54,7 @@ void EditForm::begin(const DocumentEditor& editor, const std::string& op) {
   op_ = op;
   problem_.clear();
   previewed_.clear();
+  request_ = 0;
   inputs_ = {};
   for (const FieldInfo& field : type_named(op_)->fields()) {
     if (field.type.kind == FieldKind::nodes && field.required) {
@@ -72,6 +75,15 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
   const std::vector<FieldInfo> fields = type_named(op_)->fields();
   const FieldInfo* const node = field_named(fields, "node");
   if (node == nullptr || node->type.kind != FieldKind::node || line.contains("node")) return {line};
+  // These take the one nearest triangle, or the mean of the selection, of all nodes together.
+  if (line.contains("point") || line.contains("connected") || op_ == SelectLike::op) {
+    if (editor.active.empty()) return {line};
+    const std::vector<NodeId> tops = editor.active_tops();
+    if (tops.size() > 1) throw EditError("several nodes are picked: pick one node or one group");
+    if (editor.nodes_in_scope().empty()) throw EditError("there is no node to edit " + editor.scope_words());
+    line["node"] = static_cast<std::uint64_t>(tops.front());
+    return {line};
+  }
   const bool takes_selection = field_named(fields, "selection") != nullptr;
   const bool selection = type_named(op_)->needs_selection || (takes_selection && line.value("selection", false));
   const auto with_node = [&](NodeId id) {
@@ -97,6 +109,12 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
     for (const NodeId id : editor.active_tops()) result.push_back(with_node(id));
   else
     for (const std::optional<NodeRef>& one : editor.scope(selection)) result.push_back(with_node(one->id));
+  // A stored selection need not exist in all of them.
+  if (op_ == Select::op && line.contains("saved") && line.at("saved").is_string())
+    std::erase_if(result, [&](const json& one) {
+      const NodePtr of = find(editor.scene(), NodeId(one.at("node").get<std::uint64_t>()));
+      return result.size() > 1 && !of->saved_selections.contains(line.at("saved").get<std::string>());
+    });
   if (result.empty())
     throw EditError((selection ? "nothing is selected " : "there is no node to edit ") + editor.scope_words());
   return result;
@@ -105,19 +123,26 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
 // Requests a preview of the edits. If a field is invalid, shows its error and waits.
 void EditForm::show(DocumentEditor& editor) {
   if (editor.jobs.worker.busy()) return;
+  // That of a drag comes first.
+  const std::size_t shown = editor.requested_preview();
+  if (shown != 0 && shown != request_) return;
   try {
     const std::vector<json> wanted = lines(editor);
     const Ground& ground = editor.scene().ground;
     const std::string text =
         json(wanted).dump() + fmt::format(" {} {} {}", ground.normal.x(), ground.normal.z(), ground.height);
-    if (text == previewed_ && previewed_on_ == editor.scene().roots) return;
+    if (text == previewed_ && previewed_on_ == editor.scene().roots && previewed_with_ == editor.scene().views &&
+        shown == request_)
+      return;
     previewed_ = text;
     previewed_on_ = editor.scene().roots;
+    previewed_with_ = editor.scene().views;
+    request_ = 0;
     std::vector<Edit> edits;
     for (const json& line : wanted) edits.push_back(read_edit(line, editor.scene()));
     // Imports have no preview: their files would be read twice.
     if (edits.front().is<Import>()) return;
-    editor.show_preview(std::move(edits));
+    request_ = editor.show_preview(std::move(edits));
     problem_.clear();
   } catch (const Error& error) {
     previewed_.clear();
@@ -128,7 +153,8 @@ void EditForm::show(DocumentEditor& editor) {
 // For selecting edits: draws the number of triangles that would be selected, counted in the preview.
 void EditForm::draw_count(const DocumentEditor& editor) const {
   if (!type_named(op_)->selects || !previews_ || !problem_.empty()) return;
-  const bool there = editor.preview && editor.preview->of == editor.scene().roots;
+  const bool there =
+      editor.preview && editor.preview->of == editor.scene().roots && editor.preview->request == request_;
   std::string text = "Counting...";
   const json values = inputs_.values();
   const auto node = values.find("node");
@@ -140,7 +166,8 @@ void EditForm::draw_count(const DocumentEditor& editor) const {
         fmt::format("Would select {} (currently {})", triangles_text(selected_in(editor, editor.preview->scene, only)),
                     selected_in(editor, editor.scene(), only));
   // The preview is that of earlier fields.
-  if (const std::string problem = editor.previews.problem(); !editor.previews.busy() && !problem.empty())
+  if (const std::string problem = editor.previews.problem();
+      !editor.previews.busy() && !problem.empty() && editor.requested_preview() == request_)
     text = problem;
   ImGui::TextUnformatted(text.c_str());
   announce::item("count: " + text);

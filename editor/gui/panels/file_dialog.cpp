@@ -161,11 +161,11 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       editor.project.save_script(path);
       break;
     case FileDialogPurpose::light_picture: {
-      LightEdit edit = light_edit(editor.scene().light ? *editor.scene().light : SceneLight{});
+      LightEdit edit = light_edit(editor.scene().light ? *editor.scene().light : SceneLight{}, editor.scene());
       edit.source = "picture";
       edit.picture = path.string();
       edit.content.clear();
-      editor.edit(edit);
+      editor.edit_light(edit);
       break;
     }
     case FileDialogPurpose::light_model:

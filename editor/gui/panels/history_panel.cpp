@@ -21,8 +21,7 @@ void HistoryPanel::draw(DocumentEditor& editor) {
     ImGui::PopID();
     announce::item(fmt::format("{}", k));
     if (k == done && fresh) ImGui::SetScrollHereY(0.8F);
-    if (clicked && k < done) editor.undo(done - k);
-    if (clicked && k > done) editor.redo(k - done);
+    if (clicked && k != done) editor.go_to(static_cast<std::size_t>(k));
   }
 }
 

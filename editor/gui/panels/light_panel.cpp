@@ -16,8 +16,8 @@ namespace rebake {
 
 namespace {
 
-LightEdit edit_for(const SceneLight& light, bool on) {
-  LightEdit edit = light_edit(light);
+LightEdit edit_for(const EditorContext& editor, const SceneLight& light, bool on) {
+  LightEdit edit = light_edit(light, editor.scene());
   if (on) return edit;
   edit.effects = {"none"};
   edit.source = "estimated";
@@ -127,7 +127,7 @@ void draw_effects(EditorContext& editor, const SceneLight& light) {
       SceneLight changed = light;
       changed.*effect.wanted = wanted;
       if (effect.wanted == &SceneLight::self) changed.highlights = wanted;
-      editor.edit(edit_for(changed, true));
+      editor.edit_light(edit_for(editor, changed, true));
     }
     ui::tip(effect.name, "", effect.help);
   }
@@ -144,16 +144,15 @@ void draw_source(EditorContext& editor, const SceneLight& light) {
     if (changed.source == SceneLight::Source::picture && !changed.picture)
       editor.dialogs.path = FileDialogPurpose::light_picture;
     else
-      editor.edit(edit_for(changed, true));
+      editor.edit_light(edit_for(editor, changed, true));
   }
 }
 
 }  // namespace
 
 void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, bool on) {
-  const auto commit = [&](const SceneLight& changed) { editor.edit(edit_for(changed, true)); };
   bool follows = on;
-  if (ui::toggle("Follows edits##follows-edits", follows)) editor.edit(edit_for(light, follows));
+  if (ui::toggle("Follows edits##follows-edits", follows)) editor.edit_light(edit_for(editor, light, follows));
   ui::tip("Light follows edits", "", "Updates shadows when objects are deformed, moved or removed.");
   if (!on) return;
   ImGui::SameLine();
@@ -177,7 +176,7 @@ void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, b
   if (field("budget", budget_, "{:.2g} of 255", 0.05, 0, 255)) {
     SceneLight changed = light;
     changed.budget = budget_ / 255;
-    commit(changed);
+    editor.edit_light(edit_for(editor, changed, true));
   }
   ui::tip("Error budget", "", "Maximum colour error caused by skipped effects.");
   if (light.source == SceneLight::Source::sky) {
@@ -192,7 +191,7 @@ void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, b
     if (finished && sun_.norm() > 1e-3) {
       SceneLight changed = light;
       changed.sun.direction = sun_;
-      commit(changed);
+      editor.edit_light(edit_for(editor, changed, true));
     }
   }
   if (light.source == SceneLight::Source::picture && light.picture) {
@@ -206,7 +205,7 @@ void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, b
     if (field("turn", turn_, "{:.0f}°", 1, -360, 360)) {
       SceneLight changed = light;
       changed.picture_rotation = turn_ * std::numbers::pi / 180;
-      commit(changed);
+      editor.edit_light(edit_for(editor, changed, true));
     }
     ui::tip("Rotate", "", "Rotates the environment map about the vertical axis.");
   }

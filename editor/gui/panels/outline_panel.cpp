@@ -197,6 +197,10 @@ void OutlinerPanel::draw_node(ToolContext& editor, DialogState& dialogs, const P
 void OutlinerPanel::draw(ToolContext& editor, DialogState& dialogs) {
   const Scene& scene = editor.scene();
   const announce::Part part("outline");
+  if (std::exchange(document_, editor.now->document) != editor.now->document) {
+    renaming_ = shift_from_ = NodeId::none;
+    folded_.clear();
+  }
   if (scene.roots.empty()) {
     ui::muted("No scene is open.");
     return;

@@ -31,6 +31,7 @@ class OutlinerPanel {
   void pick(ToolContext& editor, NodeId id);
   std::set<NodeId> folded_;                                     ///< collapsed groups
   NodeId renaming_ = NodeId::none, shift_from_ = NodeId::none;  ///< node being renamed; one end of a Shift range
+  std::uint64_t document_ = 0;                                  ///< Snapshot::document of these nodes
   std::string name_;                                            ///< typed name
   bool focus_name_ = false;
 };
@@ -46,6 +47,7 @@ class PropertiesPanel {
   void draw_one(DocumentEditor& editor, const PlacedNode& placed);
   void draw_several(DocumentEditor& editor);
   std::set<NodeId> of_;                                        ///< nodes that the numbers belong to
+  Affine from_ = Affine::Identity();  ///< Node::to_parent when a change began
   Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};  ///< scene units, Euler angles in degrees, factors
   bool dragging_ = false;         ///< a number is being dragged, so the numbers differ from the document
   std::size_t problem_step_ = 0;  ///< number of history steps when `problem_` was set
@@ -166,9 +168,11 @@ class EditForm {
   void show(DocumentEditor& editor);
   void draw_count(const DocumentEditor& editor) const;
   bool previews_ = true;
-  std::string previewed_;              ///< JSON of the edits that the preview shows or is computing
-  std::vector<NodePtr> previewed_on_;  ///< root nodes of the scene that the preview started from
-  std::string op_, problem_;           ///< op of the edit; error message
+  std::string previewed_;                         ///< JSON of the edits that the preview shows or is computing
+  std::vector<NodePtr> previewed_on_;             ///< root nodes of the scene that the preview started from
+  std::map<std::string, Camera> previewed_with_;  ///< its stored views
+  std::size_t request_ = 0;                       ///< number of the preview's request; 0: none was needed
+  std::string op_, problem_;                      ///< op of the edit; error message
   FieldInputs inputs_;
 };
 

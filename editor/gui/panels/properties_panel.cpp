@@ -75,6 +75,7 @@ void PropertiesPanel::draw_one(DocumentEditor& editor, const PlacedNode& placed)
                                            ? 1.0
                                            : subtree_bounds(editor.scene(), placed.node->id).diagonal().norm());
   if (!dragging_) {
+    from_ = placed.node->to_parent;
     position_ = shown(now.position, size);
     angles_ = shown(euler_degrees(now.rotation), 100);
     scale_ = now.scale;
@@ -102,13 +103,17 @@ void PropertiesPanel::draw_one(DocumentEditor& editor, const PlacedNode& placed)
   if (place.scale && (scale_.array() == 0).any()) {
     problem_ = "A scale must not be 0.";
     dragging_ = false;
+    editor.drop_preview();
     return;
   }
   dragging_ = changed == ui::Changed::dragged;
   if (dragging_)
     editor.show_preview({place});
   else
-    editor.edit(place);
+    editor.edit_unchanged(place, [id = placed.node->id, from = from_](const Scene& scene) {
+      const NodePtr node = find(scene, id);
+      return node && node->to_parent.matrix() == from.matrix();
+    });
 }
 
 void PropertiesPanel::draw_several(DocumentEditor& editor) {
@@ -145,7 +150,7 @@ void PropertiesPanel::draw_several(DocumentEditor& editor) {
   if (dragging_)
     editor.show_preview(list);
   else
-    editor.edits(list);
+    editor.edits_unchanged(list, [roots = editor.scene().roots](const Scene& scene) { return scene.roots == roots; });
 }
 
 void PropertiesPanel::draw(DocumentEditor& editor) {
@@ -168,10 +173,13 @@ void PropertiesPanel::draw(DocumentEditor& editor) {
     ImGui::TextDisabled("locked");
   }
   ImGui::BeginDisabled(placed->locked);
+  // A number that is typed or dragged belongs to the nodes that were picked then.
+  for (const NodeId id : editor.active) ImGui::PushID(static_cast<int>(id));
   if (editor.active.size() == 1)
     draw_one(editor, *placed);
   else
     draw_several(editor);
+  for (std::size_t k = 0; k < editor.active.size(); ++k) ImGui::PopID();
   ImGui::EndDisabled();
   if (!problem_.empty()) ui::wrapped(problem_, theme().danger);
   if (const std::string rows = rows_of(editor); !rows.empty()) ui::muted(rows);

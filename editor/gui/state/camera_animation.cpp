@@ -29,6 +29,7 @@ void refuse_other_pictures(const fs::path& folder, std::size_t count) {
     if (fs::is_symlink(picture, error) || !is_rendered_picture(picture))
       throw FileError(picture, "exists and was not rendered by Rebake, or is a link; choose a new folder");
     refuse_replacing_work(picture);
+    refuse_replacing_captured(picture);
   }
 }
 

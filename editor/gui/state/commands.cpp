@@ -228,9 +228,12 @@ void store_view(ToolContext& editor, const std::string& name) {
   edit.name = name;
   edit.camera = editor.view.camera;
   edit.camera.near_plane = edit.camera.far_plane = 0;  // 0: fitted to the scene when the view is used
-  for (int number = 1; edit.name.empty(); ++number)
-    if (std::string free = "view " + std::to_string(number); !editor.scene().views.contains(free)) edit.name = free;
-  editor.edit(edit);
+  editor.edits_from(StoreView::op, [edit](const Scene& scene) {
+    StoreView named = edit;
+    for (int number = 1; named.name.empty(); ++number)
+      if (std::string free = "view " + std::to_string(number); !scene.views.contains(free)) named.name = free;
+    return std::vector<Edit>{named};
+  });
 }
 
 const std::vector<Command>& command_table() {
@@ -398,8 +401,9 @@ const std::vector<Command>& command_table() {
       {"View", "Show overdraw", "Alt+6", "Alt+6", "Shows how many triangles overlap: brighter is more.", always,
        look_at<Guides::Inspect::overdraw>, is_inspecting<Guides::Inspect::overdraw>},
       {"View", "Near clipping", "Shift+X", "Alt+B",
-       "Hides everything nearer than a plane and excludes it from selection. Alt + wheel moves the plane.", has_scene,
-       toggle_cut, [](const EditorContext& editor) { return editor.view.cut > 0; }},
+       "Hides everything nearer than a plane; picks, rectangle, lasso, polygon and brush leave it out. Alt + wheel "
+       "moves the plane.",
+       has_scene, toggle_cut, [](const EditorContext& editor) { return editor.view.cut > 0; }},
       {"View", "Maximise viewport", "Ctrl+Space", "Ctrl+Space", "The viewport fills the window.", always,
        [](EditorContext& editor) { editor.view.alone = !editor.view.alone; },
        [](const EditorContext& editor) { return editor.view.alone; }},

@@ -63,15 +63,17 @@ bool DocumentEditor::take_news() {
   finished_ = jobs.worker.take_finished();
   const std::shared_ptr<const Snapshot> next = jobs.worker.snapshot();
   if (next == now) return false;
-  const bool other = next->scene.roots != scene().roots;
-  const bool made_more =
-      next->done.size() > now->done.size() && next->done.back().type().makes_nodes && next->before_last;
+  const bool other = next->scene.roots != scene().roots, other_document = next->document != now->document;
+  const bool made_more = !other_document && next->done.size() > now->done.size() && next->done.back().type().makes_nodes && next->before_last;
   // The status bar shows the title of the last step when it is another one.
   const void* const last_before = now->done.empty() ? nullptr : now->done.back().value();
   if (const void* const last = next->done.empty() ? nullptr : next->done.back().value(); last != last_before)
     status = next->steps_done > 0 ? next->steps[next->steps_done - 1].title : "";
   now = next;
-  if (other && preview && preview->of != next->scene.roots) drop_preview();
+  jobs.worker.saw(*now);
+  if ((other && preview && preview->of != next->scene.roots) || other_document) drop_preview();
+  // Nodes of another document have the same numbers.
+  if (other_document) active.clear();
   std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
   if (made_more) pick_new(placed_nodes(*now->before_last));
   selected_.clear();
@@ -104,9 +106,9 @@ void DocumentEditor::pick_new(const std::vector<PlacedNode>& before) {
   active = {tops.begin(), tops.end()};
 }
 
-void DocumentEditor::show_preview(std::vector<Edit> list, std::optional<Scene> from, Previews::Make quick) {
+std::size_t DocumentEditor::show_preview(std::vector<Edit> list, std::optional<Scene> from, Previews::Make quick) {
   const auto done = std::make_shared<std::promise<std::shared_ptr<const AppliedEdits>>>();
-  asked_ = PreviewRequest{list, done->get_future().share()};
+  asked_ = PreviewRequest{list, done->get_future().share(), 0};
   Previews::Make exact = [from = from ? *std::move(from) : scene(), list = std::move(list),
                           done](const Progress& progress) {
     try {
@@ -118,10 +120,9 @@ void DocumentEditor::show_preview(std::vector<Edit> list, std::optional<Scene> f
       throw;
     }
   };
-  if (quick)
-    previews.request(scene().roots, std::move(quick), std::move(exact));
-  else
-    previews.request(scene().roots, std::move(exact));
+  asked_->number = quick ? previews.request(scene().roots, std::move(quick), std::move(exact))
+                         : previews.request(scene().roots, std::move(exact));
+  return asked_->number;
 }
 
 std::optional<DocumentEditor::PreviewRequest> DocumentEditor::matching_preview(const std::vector<Edit>& list) const {
@@ -187,6 +188,32 @@ void DocumentEditor::edits_if_changing(const std::vector<Edit>& list) {
          {});
 }
 
+void DocumentEditor::edits_from(std::string title, std::function<std::vector<Edit>(const Scene&)> make,
+                                std::function<void()> then, std::function<void()> otherwise) {
+  previews.drop_stale();
+  change(
+      std::move(title), [make = std::move(make)](Session& session) { session.edits(make(session.scene())); },
+      std::move(then), std::move(otherwise));
+}
+
+void DocumentEditor::edits_unchanged(const std::vector<Edit>& list, std::function<bool(const Scene&)> same,
+                                     std::function<void()> then, std::function<void()> otherwise) {
+  if (list.empty()) return;
+  edits_from(
+      list.front().type().op,
+      [list, same = std::move(same)](const Scene& scene) {
+        if (!same(scene)) throw EditError("another step was applied in the meantime; nothing was changed, try again");
+        return list;
+      },
+      std::move(then), std::move(otherwise));
+}
+
+void DocumentEditor::edit_light(const Edit& edit) {
+  edit_unchanged(edit, [shown = scene().light](const Scene& on) {
+    return on.light == shown || (on.light && shown && *on.light == *shown);
+  });
+}
+
 void DocumentEditor::adjust(const std::vector<Edit>& list, std::function<void()> then,
                             std::function<void()> otherwise) {
   replace_last(&Session::adjust, list, std::move(then), std::move(otherwise));
@@ -211,39 +238,115 @@ void DocumentEditor::replace_last(Replace how, const std::vector<Edit>& list, st
   change(list.front().type().op, job, std::move(then), std::move(otherwise));
 }
 
+namespace {
+
+// Steps that a job undid or redid.
+struct StepsMade {
+  int count = 0;
+  const void* edit = nullptr;  // of the last one
+};
+
+void undo_step_in(Session& session, StepsMade& made) {
+  if (!session.document.undo_step(session.progress)) return;
+  ++made.count;
+  made.edit = session.document.history().undone().front().value();
+}
+void redo_step_in(Session& session, StepsMade& made) {
+  if (!session.document.redo_step(session.progress)) return;
+  ++made.count;
+  made.edit = session.document.history().edits().back().value();
+}
+
+}  // namespace
+
 void DocumentEditor::undo(int steps) {
   at_rest_ = false;
+  const auto made = std::make_shared<StepsMade>();
   jobs.worker.start(
       "undo",
-      [steps](Session& session) {
-        int done = 0;
-        while (done < steps && session.document.undo_step(session.progress)) ++done;
+      [steps, made](Session& session) {
+        for (int before = -1; made->count < steps && before != made->count; undo_step_in(session, *made))
+          before = made->count;
       },
-      [this, said = title_of_steps(-steps)] { status = "Undid: " + said; });
+      [this, made] {
+        status = "Undid: " + (made->count > 1    ? fmt::format("{} steps", made->count)
+                              : made->count == 0 ? "nothing"
+                                                 : title_of_step(made->edit));
+      });
 }
 void DocumentEditor::redo(int steps) {
   at_rest_ = false;
+  const auto made = std::make_shared<StepsMade>();
   jobs.worker.start(
       "redo",
-      [steps](Session& session) {
-        int done = 0;
-        while (done < steps && session.document.redo_step(session.progress)) ++done;
+      [steps, made](Session& session) {
+        for (int before = -1; made->count < steps && before != made->count; redo_step_in(session, *made))
+          before = made->count;
       },
-      [this, said = title_of_steps(steps)] { status = "Redid: " + said; });
+      [this, made] {
+        status = "Redid: " + (made->count > 1    ? fmt::format("{} steps", made->count)
+                              : made->count == 0 ? "nothing"
+                                                 : title_of_step(made->edit));
+      });
 }
 
-const SelectPicture* DocumentEditor::last_visible_selection() const {
-  const auto last =
-      std::find_if(now->done.rbegin(), now->done.rend(), [](const Edit& edit) { return edit.type().selects; });
-  const auto* picture = last == now->done.rend() ? nullptr : last->as<SelectPicture>();
-  return picture != nullptr && !picture->through ? picture : nullptr;
+void DocumentEditor::go_to(std::size_t steps) {
+  std::vector<Edit> all = now->done;
+  all.insert(all.end(), now->undone.begin(), now->undone.end());
+  std::size_t edits = 0;
+  for (std::size_t k = 0; k < steps; ++k) edits += now->steps[k].edits;
+  all.erase(all.begin() + static_cast<std::ptrdiff_t>(edits), all.end());
+  at_rest_ = false;
+  const bool undoes = steps < now->steps_done;
+  const auto made = std::make_shared<StepsMade>();
+  jobs.worker.start(
+      undoes ? "undo" : "redo",
+      [all, made](Session& session) {
+        const History& history = session.document.history();
+        std::vector<Edit> there = history.edits();
+        const std::vector<Edit> undone = history.undone();
+        there.insert(there.end(), undone.begin(), undone.end());
+        const bool same = all.size() <= there.size() &&
+                          std::equal(all.begin(), all.end(), there.begin(),
+                                     [](const Edit& a, const Edit& b) { return a.value() == b.value(); });
+        if (!same) throw EditError("another step was applied in the meantime; nothing was changed, try again");
+        while (history.undo_count() > all.size()) undo_step_in(session, *made);
+        while (history.undo_count() < all.size()) redo_step_in(session, *made);
+      },
+      [this, made, undoes] {
+        if (made->count == 0) return;
+        status = (undoes ? "Undid: " : "Redid: ") +
+                 (made->count > 1 ? fmt::format("{} steps", made->count) : title_of_step(made->edit));
+      });
 }
 
-std::string DocumentEditor::title_of_steps(int steps) const {
-  const auto done = static_cast<int>(now->steps_done), first = std::min(done, done + steps);
-  if (std::abs(steps) > 1) return fmt::format("{} steps", std::abs(steps));
-  return first >= 0 && first < static_cast<int>(now->steps.size()) ? now->steps[static_cast<std::size_t>(first)].title
-                                                                   : "nothing";
+std::vector<SelectPicture> DocumentEditor::visible_selections() const {
+  std::vector<SelectPicture> last;
+  std::map<NodeId, bool> begins;  // whether the first of these edits for a node replaced its selection; none: all nodes
+  for (auto edit = now->done.rbegin(); edit != now->done.rend(); ++edit) {
+    const auto* picture = edit->as<SelectPicture>();
+    if (picture == nullptr || picture->through) break;
+    if (picture->mode != SelectMode::set && picture->mode != SelectMode::add) break;
+    bool& begun = begins[picture->node ? picture->node->id : NodeId::none];
+    if (begun) break;
+    begun = picture->mode == SelectMode::set;
+    last.insert(last.begin(), *picture);
+  }
+  const bool all = std::all_of(begins.begin(), begins.end(), [](const auto& one) { return one.second; });
+  return all ? last : std::vector<SelectPicture>();
+}
+
+std::string DocumentEditor::title_of_step(const void* edit) const {
+  std::size_t number = 0;
+  for (const std::vector<Edit>* const list : {&now->done, &now->undone})
+    for (const Edit& one : *list) {
+      ++number;
+      if (one.value() != edit) continue;
+      std::size_t edits = 0;
+      for (const Snapshot::Step& step : now->steps)
+        if ((edits += step.edits) >= number) return step.title;
+    }
+  return "";
 }
 
 std::vector<NodeId> DocumentEditor::active_tops() const {

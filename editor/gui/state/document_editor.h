@@ -38,7 +38,10 @@ struct DocumentEditor {
   std::optional<Preview> preview;
   /// Computes the result of edits on `from` (default: the current scene) in the background and shows it as the preview.
   /// `quick` computes an approximation to show first. If the same edits are applied later, this result is reused.
-  void show_preview(std::vector<Edit> list, std::optional<Scene> from = {}, Previews::Make quick = {});
+  /// Returns the number of the request.
+  std::size_t show_preview(std::vector<Edit> list, std::optional<Scene> from = {}, Previews::Make quick = {});
+  /// The number of the request whose preview is shown, or will be when it is computed; 0 for none.
+  std::size_t requested_preview() const { return asked_ ? asked_->number : 0; }
   /// Hides the preview and cancels its computation.
   void drop_preview();
   /// A node that is drawn beside the scene, but is not part of the document; null for none.
@@ -83,12 +86,28 @@ struct DocumentEditor {
   void edits(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   /// As edits(), but records no step if no node changes; the status bar then shows the edits' reports.
   void edits_if_changing(const std::vector<Edit>& list);
+  /// As edits(), with edits that `make` computes from the scene to which they apply; earlier jobs may have changed it
+  /// since `now`. If `make` throws, nothing is changed.
+  void edits_from(std::string title, std::function<std::vector<Edit>(const Scene&)> make,
+                  std::function<void()> then = {}, std::function<void()> otherwise = {});
+  /// As edits(), for edits made from a part of the scene in `now`. Nothing is changed, and an error is shown, if `same`
+  /// says that this part of the scene, to which they would apply, is another one by then.
+  void edits_unchanged(const std::vector<Edit>& list, std::function<bool(const Scene&)> same,
+                       std::function<void()> then = {}, std::function<void()> otherwise = {});
+  void edit_unchanged(const Edit& edit, std::function<bool(const Scene&)> same) {
+    edits_unchanged({edit}, std::move(same));
+  }
+  /// As edit_unchanged(), for an edit made from the light of the scene in `now`.
+  void edit_light(const Edit& edit);
   /// Replaces the last step by these edits. The last step stays if they fail.
   void adjust(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   /// As adjust(), but adds a new step: undo returns to the replaced one.
   void revise(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   void undo(int steps = 1);
   void redo(int steps = 1);
+  /// Undoes or redoes until this number of the steps in `now` is done; does nothing, with an error, if there are other
+  /// steps by then.
+  void go_to(std::size_t steps);
   const Scene& scene() const { return now->scene; }
   /// Picked nodes without those inside other picked nodes.
   std::vector<NodeId> active_tops() const;
@@ -110,8 +129,9 @@ struct DocumentEditor {
   std::vector<NodeId> selected_out_of_scope() const;
   /// "313 selected in kettle, 12 hidden or locked, 9312 elsewhere"; empty if nothing is selected.
   std::string selected_words() const;
-  /// The last selection edit, if it selected only visible triangles in a picture; else null.
-  const SelectPicture* last_visible_selection() const;
+  /// The last edits, if the selection consists of what they selected in pictures and all of them took visible triangles
+  /// only; else nothing.
+  std::vector<SelectPicture> visible_selections() const;
 
  protected:
   /// Fetches messages and the latest snapshot. Returns whether the snapshot is another one.
@@ -131,13 +151,14 @@ struct DocumentEditor {
   struct PreviewRequest {
     std::vector<Edit> list;
     std::shared_future<std::shared_ptr<const AppliedEdits>> made;
+    std::size_t number = 0;
   };
   /// The requested preview, if it has these edits.
   std::optional<PreviewRequest> matching_preview(const std::vector<Edit>& list) const;
   /// Picks the nodes that are not in `before`.
   void pick_new(const std::vector<PlacedNode>& before);
-  /// Title of the step that undo (steps < 0) or redo reaches, or "N steps" for several.
-  std::string title_of_steps(int steps) const;
+  /// Title of the step with an edit; empty if there is none.
+  std::string title_of_step(const void* edit) const;
   std::optional<PreviewRequest> asked_;  ///< the last requested preview
   bool in_scope(const PlacedNode& placed) const { return in_scope(scene(), placed); }
   /// Whether it is in a picked node, or nothing is picked.

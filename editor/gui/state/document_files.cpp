@@ -36,6 +36,7 @@ std::string replace_document(Session& session, Document&& document, bool keeps) 
   const fs::path present = session.document.journal_path();
   if (!keeps) session.document.discard_journal();
   session.document = std::move(document);
+  ++session.document_number;
   if (!keeps || present.empty()) return "";
   LostWork open;
   open.journal = present;
@@ -118,34 +119,37 @@ void Project::open(const std::vector<std::string>& paths, bool wanted, const Imp
   }
 }
 
-void Project::open_project(const fs::path& file, const SourceLinks& links) {
+void Project::open_project(const fs::path& file, const SourceLinks& links, bool keeps) {
   auto gone = std::make_shared<std::vector<SourcesUnavailable::Source>>();
+  auto read = std::make_shared<Scene>();  // later jobs may have changed the document before the window knows it
   worker_.start(
       "open",
-      [file, links, gone, asked = now_->scene](Session& session) {
+      [file, links, gone, read, keeps, asked = now_->scene](Session& session) {
         try {
           Document opened = Document::open(file, links, session.progress);
           const std::string missing = try_keep_journal(opened);
           // A job that ran when the user asked may have changed the document since.
-          if (const std::string said = replace_document(session, std::move(opened), !same_work(session.scene(), asked));
+          if (const std::string said = replace_document(session, std::move(opened), keeps || !same_work(session.scene(), asked));
               !said.empty())
             session.say(said);
           if (!missing.empty()) session.say(missing);
+          *read = session.scene();
         } catch (const SourcesUnavailable& moved) {
           *gone = moved.sources;  // the user is asked for new paths
         }
       },
-      [this, file, links, gone] {
+      [this, file, links, gone, read] {
         if (!gone->empty()) {
           ask_for_sources(file, *gone, links);
           return;
         }
         path = file;
-        saved_ = now_->scene;
-        imported = now_->scene;
+        saved_ = *read;
+        imported = *read;
         settings_.remember(file.string());
         opened_();
-      });
+      },
+      {}, Worker::On::any_document);
 }
 
 void Project::recover(const fs::path& journal, const SourceLinks& links, bool go_on_without) {
@@ -188,7 +192,8 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
         imported = {};
         if (problem->empty()) return;
         messages_.fail(*problem);
-      });
+      },
+      {}, Worker::On::any_document);
 }
 
 void Project::ask_for_sources(const fs::path& needed_by, const std::vector<SourcesUnavailable::Source>& gone,
@@ -207,7 +212,7 @@ void Project::relink(bool go_on_without) {
     if (source.now != source.path.string() && !source.now.empty()) links.emplace(source.path, source.now);
   }
   if (is_project_file(wanted.needed_by)) {
-    open_project(wanted.needed_by, links);
+    open_project(wanted.needed_by, links, unsaved());
     return;
   }
   recover(wanted.needed_by, links, go_on_without);
@@ -266,10 +271,10 @@ void Project::publish(const fs::path& file, const Camera& camera) {
 }
 
 void Project::save_script(const fs::path& file) {
-  std::string text;
-  for (const Edit& one : now_->done) text += to_json(one).dump() + "\n";
-  worker_.start("save script", [file, text](Session& session) {
+  worker_.start("save script", [file](Session& session) {
     refuse_replacing_other_than_script(file);
+    std::string text;
+    for (const Edit& one : session.document.history().edits()) text += to_json(one).dump() + "\n";
     write_file_atomically(file, text, session.document.sources());
     session.say("Wrote " + file.string());
   });

@@ -68,7 +68,8 @@ class Project {
   bool unsaved() const;
 
  private:
-  void open_project(const std::filesystem::path& file, const SourceLinks& links);
+  /// `keeps`: the work that is open goes to the trash. So does work that jobs do before the project is open.
+  void open_project(const std::filesystem::path& file, const SourceLinks& links, bool keeps = false);
   void ask_for_sources(const std::filesystem::path& needed_by, const std::vector<SourcesUnavailable::Source>& gone,
                        const SourceLinks& links);
 

@@ -19,14 +19,16 @@ Previews::~Previews() {
   thread_.join();
 }
 
-void Previews::request(std::vector<NodePtr> of, Make make, Make exact) {
+std::size_t Previews::request(std::vector<NodePtr> of, Make make, Make exact) {
+  std::size_t number = 0;
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = Wanted{std::move(of), std::move(make), std::move(exact)};
+    number = ++requests_;
+    wanted_ = Wanted{std::move(of), std::move(make), std::move(exact), number};
     if (refining_) cancel_ = true;
-    ++requests_;
   }
   changed_.notify_all();
+  return number;
 }
 
 void Previews::set_prepare(std::function<void(const Scene&)> prepare) {
@@ -66,13 +68,13 @@ std::optional<Preview> Previews::take() {
   return std::exchange(made_, std::nullopt);
 }
 
-void Previews::make(std::unique_lock<std::mutex>& lock, const std::vector<NodePtr>& of, const Make& make) {
+void Previews::make(std::unique_lock<std::mutex>& lock, const Wanted& wanted, const Make& make) {
   cancel_ = false;
   lock.unlock();
   std::optional<Preview> made;
   std::string problem;
   try {
-    made = Preview{make(Progress([](std::string_view, double) {}, &cancel_)), of};
+    made = Preview{make(Progress([](std::string_view, double) {}, &cancel_)), wanted.of, wanted.number};
     const std::lock_guard ready(prepare_mutex_);
     if (prepare_) prepare_(made->scene);
   } catch (const Cancelled&) {
@@ -93,11 +95,11 @@ void Previews::loop() {
     if (ending_) return;
     const Wanted next = *std::exchange(wanted_, std::nullopt);
     running_ = true;
-    make(lock, next.of, next.make);
+    make(lock, next, next.make);
     if (next.exact && !wanted_ && !cancel_ && !ending_) {
       refining_ = true;
       wake_();
-      make(lock, next.of, next.exact);
+      make(lock, next, next.exact);
       refining_ = false;
     }
     running_ = false;

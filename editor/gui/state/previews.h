@@ -16,6 +16,7 @@ namespace rebake {
 struct Preview {
   Scene scene;
   std::vector<NodePtr> of;  ///< roots of the scene that it was computed for
+  std::size_t request = 0;  ///< number of its request, from 1
 };
 
 /// Computes previews on a background thread, latest wins: a request replaces one that has not started.
@@ -29,8 +30,8 @@ class Previews {
   Previews& operator=(const Previews&) = delete;
 
   /// Requests a preview for the scene with roots `of`. If `make` throws, there is no new preview. If `exact` is set, it
-  /// then computes a better preview, until the next request cancels it.
-  void request(std::vector<NodePtr> of, Make make, Make exact = {});
+  /// then computes a better preview, until the next request cancels it. Returns the number of the request.
+  std::size_t request(std::vector<NodePtr> of, Make make, Make exact = {});
   /// `prepare` is called on the background thread with each scene before take() can return it; null for none.
   void set_prepare(std::function<void(const Scene&)> prepare);
   /// Cancels the running computation if a newer request is waiting.
@@ -48,13 +49,14 @@ class Previews {
 
  private:
   void loop();
-  void make(std::unique_lock<std::mutex>& lock, const std::vector<NodePtr>& of, const Make& make);
-
   /// A request().
   struct Wanted {
     std::vector<NodePtr> of;
     Make make, exact;
+    std::size_t number = 0;
   };
+  void make(std::unique_lock<std::mutex>& lock, const Wanted& wanted, const Make& make);
+
   std::function<void()> wake_;
   std::mutex prepare_mutex_;
   std::function<void(const Scene&)> prepare_;

@@ -33,6 +33,8 @@ void TrainingJob::start(const TrainAction& action) {
   check_can_export(action.out, worker_.snapshot()->sources);
   action_ = action;
   action_.out = absolute_path(action.out).string();
+  std::error_code error;
+  replaces_ = std::filesystem::exists(action_.out, error) && !std::filesystem::is_empty(action_.out, error);
   preview_ = {};
   node_.reset();
   begin();
@@ -101,6 +103,7 @@ void TrainingJob::run() {
     };
     TrainingObserver observer;
     observer.enough = [this] { return enough_.load(); };
+    observer.may_replace = replaces_;
     observer.more_sources = [this] { return worker_.snapshot()->sources; };
     observer.goes_on_unsaved = [this](const std::string& why) {
       // When the window closes, nobody could free space.

@@ -65,6 +65,7 @@ class TrainingJob {
   std::function<void()> wake_;
   State state_ = State::none;
   TrainAction action_;
+  bool replaces_ = false;  ///< the output folder existed when the user started the training
   TrainingPreview preview_;
   NodePtr node_;
 

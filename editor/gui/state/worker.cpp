@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "editor/gui/state/titles.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/index/index.h"
 
 namespace rebake {
@@ -54,12 +55,18 @@ Worker::~Worker() {
   thread_.join();
 }
 
-void Worker::start(std::string title, Job job, std::function<void()> then, std::function<void()> otherwise) {
+void Worker::start(std::string title, Job job, std::function<void()> then, std::function<void()> otherwise, On on) {
   {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back({std::move(title), std::move(job), std::move(then), std::move(otherwise)});
+    waiting_.push_back({std::move(title), std::move(job), std::move(then), std::move(otherwise),
+                        on == On::seen_document ? std::optional(seen_document_) : std::nullopt});
   }
   changed_.notify_all();
+}
+
+void Worker::saw(const Snapshot& snapshot) {
+  const std::lock_guard lock(mutex_);
+  seen_document_ = snapshot.document;
 }
 
 bool Worker::busy() const {
@@ -70,8 +77,12 @@ bool Worker::busy() const {
 void Worker::cancel() {
   {
     const std::lock_guard lock(mutex_);
-    for (Waiting& forgotten : waiting_)
+    std::string dropped;
+    for (Waiting& forgotten : waiting_) {
+      dropped += (dropped.empty() ? "" : ", ") + forgotten.title;
       if (forgotten.otherwise) finished_.push_back(std::move(forgotten.otherwise));
+    }
+    if (!waiting_.empty()) messages_.push_back({"Not begun, and dropped too: " + dropped, Message::Kind::said});
     waiting_.clear();
     if (running_) cancel_ = true;
   }
@@ -144,6 +155,7 @@ void Worker::name_steps(Snapshot& next) {
 void Worker::publish() {
   auto next = std::make_shared<Snapshot>();
   const History& history = session_.document.history();
+  next->document = session_.document_number;
   next->scene = history.now();
   next->done = history.edits();
   next->undone = history.undone();
@@ -184,6 +196,8 @@ void Worker::loop() {
     const std::size_t before = session_.document.history().undo_count();
     if (drops_renderer_.exchange(false)) session_.drop_renderer();
     try {
+      if (next.document.value_or(session_.document_number) != session_.document_number)
+        throw Error("another document was opened in the meantime; nothing was changed, try again");
       next.job(session_);
     } catch (const Cancelled&) {
       failed = sentence(next.title) + " was cancelled";

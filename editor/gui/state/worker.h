@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,6 +18,7 @@ namespace rebake {
 
 /// Immutable copy of the document's state after a job, for the window's thread.
 struct Snapshot {
+  std::uint64_t document = 0;  ///< Session::document_number
   Scene scene;
   std::vector<Edit> done, undone;  ///< oldest first; redo begins with the first of `undone`
   /// A step of history: edits that are undone together. Its title never changes.
@@ -44,9 +46,15 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
+  /// seen: only the document that the user saw when the job was started (see saw()); the job fails if another one was
+  /// opened in the meantime.
+  enum class On { seen_document, any_document };
   /// Queues a job. take_finished() returns `then` after its success, `otherwise` if it failed or was cancelled (also
   /// before it began). `title` is shown during the job and in errors.
-  void start(std::string title, Job job, std::function<void()> then = {}, std::function<void()> otherwise = {});
+  void start(std::string title, Job job, std::function<void()> then = {}, std::function<void()> otherwise = {},
+             On on = On::seen_document);
+  /// The window shows this snapshot from now on.
+  void saw(const Snapshot& snapshot);
   /// Whether a job is running or waiting.
   bool busy() const;
   /// Cancels the running job and removes the waiting ones.
@@ -91,7 +99,9 @@ class Worker {
     std::string title;
     Job job;
     std::function<void()> then, otherwise;
+    std::optional<std::uint64_t> document;  ///< number of the only document on which it may run; nothing: any
   };
+  std::uint64_t seen_document_ = 0;
   std::deque<Waiting> waiting_;
   bool running_ = false, ending_ = false;
   std::atomic<bool> cancel_ = false, drops_renderer_ = false;

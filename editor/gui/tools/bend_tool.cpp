@@ -82,9 +82,12 @@ bool BendTool::last_edit_follows_spine(const ToolContext& editor) const {
 void BendTool::find_spine(ToolContext& editor) {
   const SpineInputs now = current_inputs(editor);
   if (now == spine_inputs_) return;
-  spine_inputs_ = now;
-  // A second edit keeps the axis and limits of the first.
-  if (last_edit_follows_spine(editor)) return;
+  const SpineInputs before = std::exchange(spine_inputs_, now);
+  const auto same_node = [](const NodePtr& a, const NodePtr& b) { return a->id == b->id; };
+  const bool same = now.axis == before.axis && now.selection == before.selection &&
+                    std::equal(now.nodes.begin(), now.nodes.end(), before.nodes.begin(), before.nodes.end(), same_node);
+  // A second edit of the same triangles keeps the axis and limits of the first.
+  if (same && last_edit_follows_spine(editor)) return;
   found_.reset();
   from_ = 0;
   to_ = 1;
@@ -362,12 +365,15 @@ void BendTool::options(ToolContext& editor) {
   const ui::Changed changed = ui::number_field("Falloff", falloff, "{:.3g}", step, px(70));
   if (changed == ui::Changed::dragged || changed == ui::Changed::finished) falloff_ = std::max(0.0, falloff);
   ui::tip("Falloff", "", "Width of the transition at the border of the selection, in scene units. 0: hard border.");
-  if (found_ && found_->touched >= interleaved && editor.last_visible_selection() != nullptr) {
+  if (found_ && found_->touched >= interleaved && !editor.visible_selections().empty()) {
     ui::flow(px(180));
     if (ui::primary_button("Select occluded triangles##select-occluded")) {
-      SelectPicture all = *editor.last_visible_selection();
-      all.through = true;
-      editor.edit(all);
+      std::vector<Edit> all;
+      for (SelectPicture one : editor.visible_selections()) {
+        one.through = true;
+        all.emplace_back(one);
+      }
+      editor.edits(all);
     }
     ui::tip("Select occluded triangles", "",
             "Only visible triangles are selected. Occluded ones would stay in place and tear the shape.");

@@ -64,7 +64,6 @@ void CageTool::make(ToolContext& editor) {
   if (!target) return;
   CageDeform edit = edit_;
   edit.target = *target;
-  edit.target.falloff = edit_.target.falloff;
   edit.cage = {};
   if (wraps_)
     edit.cage.wrap = static_cast<double>(coarseness_);
@@ -104,6 +103,7 @@ void CageTool::make(ToolContext& editor) {
         moved_ = bound_->cage.vertices;
         steps_ = {moved_};
         at_ = 0;
+        edit_.target.falloff = 0;
         picked_.assign(moved_.size(), 0);
       });
 }
@@ -134,6 +134,12 @@ CageDeform CageTool::edit_for(const Points& points) const {
 // Records the cage's points as a step of the document's history: the first release as an edit, each later one as a
 // revision of the edit before.
 void CageTool::commit(ToolContext& editor) {
+  if (editor.scene().roots != roots_) {
+    moved_ = before_;
+    editor.drop_preview();
+    editor.messages.fail("Another step was applied during the drag; nothing was changed.");
+    return;
+  }
   steps_.resize(at_ + 1);
   steps_.push_back(moved_);
   const CageDeform edit = edit_for(moved_);
@@ -159,13 +165,13 @@ void CageTool::follow(ToolContext& editor) {
   hidden_ = false;
   if (editor.scene().roots == bound_->scene.roots) {
     if (at_ > 0) moved_ = steps_[at_ = 0];
+    edit_.target.falloff = 0;
     return;
   }
   const CageDeform* last = editor.now->done.empty() ? nullptr : editor.now->done.back().as<CageDeform>();
-  if (last != nullptr)
-    // The adjust panel may have changed the falloff.
-    edit_.target.falloff = last->target.falloff;
   if (last != nullptr) {
+    // The adjust panel may have changed the falloff of a release.
+    const double before = std::exchange(edit_.target.falloff, last->target.falloff);
     // Several steps can have equal points: prefer the one nearest to the current step.
     std::vector<std::size_t> nearest;
     for (std::size_t k = 1; k < steps_.size(); ++k) nearest.push_back(k);
@@ -176,6 +182,7 @@ void CageTool::follow(ToolContext& editor) {
         if (at_ != k) moved_ = steps_[at_ = k];
         return;
       }
+    edit_.target.falloff = before;
   }
   hidden_ = true;
   dragging_ = selecting_region_ = false;
@@ -271,6 +278,7 @@ void CageTool::pointer(ToolContext& editor, const ViewportProjection& lens, cons
     if (!pointer.shift && picked_[v] == 0) std::fill(picked_.begin(), picked_.end(), std::uint8_t{0});
     picked_[v] = 1;
     before_ = moved_;
+    roots_ = editor.scene().roots;
     dragging_ = true;
     return;
   }

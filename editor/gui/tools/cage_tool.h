@@ -63,6 +63,7 @@ class CageTool final : public ViewTool {
   std::vector<Points> steps_;         ///< cage points at rest, and after each release
   std::size_t at_ = 0;                ///< index into steps_ of the state that the document has
   Points moved_, before_;             ///< current cage points, and those at the start of the drag
+  std::vector<NodePtr> roots_;        ///< of the scene at the start of the drag
   std::vector<std::uint8_t> picked_;  ///< per cage point: 1 if selected
   bool dragging_ = false, selecting_region_ = false;  ///< points are being dragged; a box or lasso is being drawn
   bool region_is_lasso_ = false;                      ///< the region is a lasso, not a box

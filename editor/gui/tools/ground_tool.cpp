@@ -31,6 +31,8 @@ GroundEdit at_height(const Ground& ground, double height) {
 }  // namespace
 
 void GroundTool::add(ToolContext& editor, const Vec3& point) {
+  if (editor.scene().roots != roots_) points_.clear();
+  roots_ = editor.scene().roots;
   points_.push_back(point);
   if (points_.size() < 3) return;
   GroundEdit edit;
@@ -51,6 +53,7 @@ void GroundTool::draw(const ToolContext& /*editor*/, const ViewportProjection& l
 
 void GroundTool::options(ToolContext& editor) {
   const Ground& ground = editor.scene().ground;
+  if (!points_.empty() && editor.at_rest() && editor.scene().roots != roots_) points_.clear();
   if (!dragging_) height_ = ground.height;
   const Box box = world_bounds(editor.scene());
   const double size = box.isEmpty() || !(box.diagonal().norm() > 0) ? 1 : box.diagonal().norm();
@@ -65,7 +68,7 @@ void GroundTool::options(ToolContext& editor) {
     editor.show_preview({at_height(ground, height_)});
   } else if (changed == ui::Changed::finished) {
     dragging_ = false;
-    editor.edit(at_height(ground, height_));
+    editor.edit_unchanged(at_height(ground, height_), [ground](const Scene& scene) { return scene.ground == ground; });
   } else if (changed == ui::Changed::cancelled) {
     dragging_ = false;
     editor.drop_preview();

@@ -18,7 +18,8 @@ class GroundTool final : public ViewTool {
   /// Adds a clicked point (world space); the third one makes the edit.
   void add(ToolContext& editor, const Vec3& point);
 
-  std::vector<Vec3> points_;  ///< clicked so far, at most two; world space
+  std::vector<Vec3> points_;    ///< clicked so far, at most two; world space
+  std::vector<NodePtr> roots_;  ///< of the scene in which they were clicked
   Click click_;
   double height_ = 0;      ///< value of the height field, scene units
   bool dragging_ = false;  ///< the height field is being dragged

@@ -136,6 +136,12 @@ void HandlesTool::show(ToolContext& editor) {
 
 // Records the pins as a step of the document's history: the first release as an edit, each later one as a revision.
 void HandlesTool::commit(ToolContext& editor) {
+  if (editor.scene().roots != roots_) {
+    pins_ = before_;
+    editor.drop_preview();
+    editor.messages.fail("Another step was applied during the drag; nothing was changed.");
+    return;
+  }
   steps_.resize(at_ + 1);
   steps_.push_back(pins_);
   const std::optional<HandlesDeform> wanted = edit_for(pins_);
@@ -182,6 +188,7 @@ void HandlesTool::pointer(ToolContext& editor, const ViewportProjection& lens, c
     }
     held_ = pin;
     before_ = pins_;
+    roots_ = editor.scene().roots;
     pressed_at_ = pointer.at;
     return;
   }
@@ -201,6 +208,7 @@ void HandlesTool::pointer(ToolContext& editor, const ViewportProjection& lens, c
 void HandlesTool::remove_pin(ToolContext& editor, std::size_t pin) {
   pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(pin));
   if (at_ == 0) return;  // the document has no edit of the pins yet
+  roots_ = editor.scene().roots;
   show(editor);
   commit(editor);
 }

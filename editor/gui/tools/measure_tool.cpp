@@ -59,8 +59,8 @@ void MeasureTool::options(ToolContext& editor) {
     edit.points.points = points_;
     edit.length = length_;
     // The points scale with the scene.
-    editor.edits(
-        {edit},
+    editor.edits_unchanged(
+        {edit}, [roots = roots_](const Scene& scene) { return scene.roots == roots; },
         [this, &editor, factor = length_ / measured] {
           roots_ = editor.scene().roots;
           for (Vec3& point : points_) point *= factor;

@@ -28,8 +28,8 @@ void take(ToolContext& editor, const std::optional<PickHit>& picked, const Point
     like.contiguous = !editor.settings.flood_everywhere;
     like.mode = select_mode(pointer);
     std::vector<Edit> edits;
-    // Without Shift, as with the other tools, the selections of all nodes in the scope are replaced.
-    if (like.mode == SelectMode::set)
+    // As with the other tools, replacing and intersecting leave nothing selected in the other nodes of the scope.
+    if (like.mode == SelectMode::set || like.mode == SelectMode::intersect)
       for (const NodeId other : editor.nodes_in_scope(true)) {
         if (other == picked->node) continue;
         Select none;
@@ -57,7 +57,10 @@ void PickTool::pointer(ToolContext& editor, const ViewportProjection& lens, cons
   auto picked = std::make_shared<std::optional<PickHit>>();
   editor.jobs.worker.start(
       "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },
-      [&editor, picked, pointer, floods = floods_] { take(editor, *picked, pointer, floods); });
+      [&editor, picked, pointer, floods = floods_, before = editor.active] {
+        // Nodes picked in the meantime are the newer wish.
+        if (editor.active == before) take(editor, *picked, pointer, floods);
+      });
 }
 
 void PickTool::options(ToolContext& editor) {

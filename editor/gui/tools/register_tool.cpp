@@ -93,7 +93,7 @@ void RegisterTool::options(ToolContext& editor) {
   ui::toggle("Refine##refine", refine_);
   ui::tip("Refine", "", "After the pairs, fits the surfaces that both captures have.");
   ui::flow(px(90));
-  ImGui::BeginDisabled(onto_.size() < 3 || from_.size() != onto_.size());
+  ImGui::BeginDisabled(onto_.size() < 3 || from_.size() != onto_.size() || !editor.at_rest());
   if (ui::button("Register##register")) {
     Register edit;
     edit.node = {node_};
@@ -101,7 +101,9 @@ void RegisterTool::options(ToolContext& editor) {
     edit.onto.points = onto_;
     edit.scale = scale_;
     edit.refine = refine_;
-    editor.edits({edit}, [this, &editor] { cancel(editor); });
+    editor.edits_unchanged(
+        {edit}, [roots = roots_](const Scene& scene) { return scene.roots == roots; },
+        [this, &editor] { cancel(editor); });
   }
   ImGui::EndDisabled();
   ui::tip("Register", "", "Moves the picked node so that its points fall onto their counterparts.");

@@ -27,6 +27,7 @@ struct Editing {
   bool next = false;         ///< Tab was pressed: the next field drawn opens its text box
   std::string text, before;  ///< current text, and the text when the box was opened
   ImGuiID dragged = 0;       ///< the field under drag; 0: none
+  int drag_seen = 0;         ///< number of the last frame that drew the field `dragged`
   double from = 0;           ///< value at the start of the drag
   bool moved = false, cancelled = false;
 };
@@ -108,11 +109,14 @@ Changed number_field(const char* id, double& value, const char* format, double s
   announce::item(id);
   Changed changed = Changed::nothing;
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+  // A field that was not drawn for a while has lost its drag.
+  if (editing.dragged == self && ImGui::GetFrameCount() > editing.drag_seen + 1) editing.dragged = 0;
   if (ImGui::IsItemActivated()) {
     editing.dragged = self;
     editing.from = value;
-    editing.moved = false;
+    editing.moved = editing.cancelled = false;
   }
+  if (editing.dragged == self) editing.drag_seen = ImGui::GetFrameCount();
   const float way = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0).x;
   if (editing.dragged == self && std::exchange(editing.cancelled, false)) {
     editing.dragged = 0;

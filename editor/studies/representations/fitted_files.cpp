@@ -106,10 +106,14 @@ void fit_mobilenerf(const StudyInput& input, const RepresentationSizes& sizes, S
   }
 }
 
+int most_passes_of(const RepresentationSizes& sizes, Method method) {
+  return method == Method::mobilenerf ? most_epochs : sizes.most_passes;
+}
+
 void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth& truth, FittedFiles& fitted) {
   std::vector<HeldOutView> views = truth.validation(fitted.folder.parent_path());
   const bool epochs = fitted.method == Method::mobilenerf;
-  Budget budget(input, fitted, std::move(views), epochs ? most_epochs : sizes.most_passes);
+  Budget budget(input, fitted, std::move(views), most_passes_of(sizes, fitted.method));
   fs::create_directories(fitted.folder);
   if (epochs) {
     truth.field();
@@ -137,8 +141,15 @@ void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth&
 }
 
 std::string text_of(const RepresentationSizes& sizes) {
-  return fmt::format("version {}, {} views of {}² rays, pictures of {}², at most {} passes", fit_version, sizes.views,
-                     sizes.ray_side, sizes.picture, sizes.most_passes);
+  return fmt::format("version {}, {} views of {}² rays, pictures of {}²", fit_version, sizes.views, sizes.ray_side,
+                     sizes.picture);
+}
+
+// Whether a fit ended at an earlier limit of passes, although it gained from each doubling and may have more now.
+bool may_gain_more(const RepresentationSizes& sizes, const FittedFiles& fitted) {
+  const auto& curve = fitted.curve;
+  const bool gained = curve.size() < 2 || curve.back()[1] - curve[curve.size() - 2][1] >= enough_db;
+  return gained && 2 * fitted.passes <= most_passes_of(sizes, fitted.method);
 }
 
 // The result of fit(); written last, so that an interrupted fit is repeated.
@@ -161,7 +172,7 @@ bool read_result(const RepresentationSizes& sizes, FittedFiles& fitted) {
   } catch (const nlohmann::json::exception&) {
     throw FileError(file, "is damaged; remove its folder to fit this representation again");
   }
-  return true;
+  return !may_gain_more(sizes, fitted);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct RepresentationSizes {
   int views = 48;                   ///< that representations are fitted to
   int ray_side = 240;               ///< rays per side of each of these views
   int held_out = 4, picture = 400;  ///< held-out pictures, and their side
-  int most_passes = 64;             ///< of a fit of a volume
+  int most_passes = 512;            ///< of a fit of a volume
 };
 
 /// The truth of a sample, made when first asked for.

@@ -21,22 +21,30 @@ CurvedForm::Piece bend_of(CurvedForm::Piece piece, const Vec3& along, const Vec3
   return piece;
 }
 
+// The vector times a power of two that makes it neither overflow nor underflow when squared.
+Vec3 scaled(const Vec3& v, double scale) {
+  return {std::ldexp(v.x(), -std::ilogb(scale)), std::ldexp(v.y(), -std::ilogb(scale)),
+          std::ldexp(v.z(), -std::ilogb(scale))};
+}
+Vec3 scaled(const Vec3& v) { return scaled(v, v.cwiseAbs().maxCoeff()); }
+
 std::vector<bool> opposed_segments(const std::vector<Vec3>& spine) {
   const std::size_t n = spine.size() - 1;
   std::vector<bool> result(n * n);
   bool any = false;
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t k = 0; k < n; ++k)
-      if ((spine[j + 1] - spine[j]).dot(spine[k + 1] - spine[k]) < 0) any = result[j * n + k] = true;
+      if (scaled(spine[j + 1] - spine[j]).dot(scaled(spine[k + 1] - spine[k])) < 0) any = result[j * n + k] = true;
   if (!any) result.clear();
   return result;
 }
 
 std::size_t nearest_segment(const std::vector<Vec3>& spine, const Vec3& point) {
   std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), size = 0;
+  for (const Vec3& p : spine) size = std::max(size, (p - spine.front()).cwiseAbs().maxCoeff());
   for (std::size_t k = 0; k + 1 < spine.size(); ++k) {
-    const Vec3 way = spine[k + 1] - spine[k], to_point = point - spine[k];
+    const Vec3 way = scaled(spine[k + 1] - spine[k], size), to_point = scaled(point - spine[k], size);
     const double share = std::clamp(to_point.dot(way) / way.squaredNorm(), 0.0, 1.0);
     const double distance = (to_point - share * way).squaredNorm();
     if (distance < least) {

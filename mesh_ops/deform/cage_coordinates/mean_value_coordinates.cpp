@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "mesh_ops/deform/cage_coordinates/coordinates.h"
 #include "mesh_ops/deform/cage_coordinates/far_quadrature.h"
 #include "mesh_ops/deform/cage_coordinates/near_faces.h"
@@ -78,6 +80,11 @@ class MeanValue final : public Coordinates {
     } else {
       weigh_local<double>(places, local, weights, gradients);
     }
+    // Too far away to be a number of cage diagonals: no weights either.
+    for (std::size_t lane = 0; lane < batch_lanes; ++lane)
+      if (points[lane].allFinite() && !frame_.to_local(points[lane]).allFinite())
+        for (std::size_t v = 0; v < rows(); ++v)
+          weights[v * batch_lanes + lane] = std::numeric_limits<double>::quiet_NaN();
   }
 
  private:

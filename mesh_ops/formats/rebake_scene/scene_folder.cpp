@@ -258,7 +258,30 @@ class SceneReader {
     if (value.contains("children"))
       for (const json& child : value.at("children"))
         node.children.push_back(std::make_shared<const Node>(read_node(child, depth + 1)));
-    return node;
+    return node.object && !node.children.empty() ? group_of(node) : node;
+  }
+
+  // A group of an object and its children, at the same places: edits take objects for leaves.
+  static Node group_of(const Node& object_with_children) {
+    Node group = object_with_children, object = object_with_children;
+    object.children.clear();
+    object.visible = true;
+    object.locked = false;
+    object.to_parent = Affine::Identity();
+    if (group.motion) {
+      const auto part = [](const NodeMotion& motion) {
+        return motion.empty() ? nullptr : std::make_shared<const NodeMotion>(motion);
+      };
+      NodeMotion place = *group.motion, bends = *group.motion;
+      place.bends.clear();
+      bends.place = {};
+      group.motion = part(place);
+      object.motion = part(bends);
+    }
+    group.name += " and children";
+    group.object = nullptr;
+    group.children.insert(group.children.begin(), std::make_shared<const Node>(std::move(object)));
+    return group;
   }
 
   Affine read_affine(const json& rows, const std::string& node) const {
@@ -319,6 +342,7 @@ class SceneReader {
       std::string geometry;
       for (const SourceFile& file : files.geometry) geometry += words(file);
       files.texels = set.texels;
+      if (geometry.empty()) continue;  // made of several files that contradict each other
       const auto [same, fresh] = soups_.try_emplace(geometry, set.soup);
       if (fresh) continue;
       set.soup = Soup(same->second.shared_positions(), same->second.shared_uvs(), same->second.shared_faces(),
@@ -350,9 +374,15 @@ std::string folder_name(const std::string& name, const std::vector<std::string>&
   while (!base.empty() && base.front() == '.') base.erase(0, 1);
   if (base.empty() || is_baked_file_name(base) || base == "scene.json") base = "object_" + base;
   base.resize(std::min(base.size(), longest_folder_name));
+  // Some file systems do not distinguish capitals.
+  const auto lower = [](std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+  };
   std::string result = base;
-  for (int n = 2; std::find(taken.begin(), taken.end(), result) != taken.end(); ++n)
-    result = fmt::format("{}_{}", base, n);
+  const auto is_taken = [&](const std::string& other) { return lower(other) == lower(result); };
+  for (int n = 2; std::any_of(taken.begin(), taken.end(), is_taken); ++n) result = fmt::format("{}_{}", base, n);
   return result;
 }
 

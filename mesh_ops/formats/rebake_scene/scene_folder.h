@@ -9,7 +9,8 @@
 
 namespace rebake {
 
-/// Reads scene.json and the object folders that it names. Throws FileError.
+/// Reads scene.json and the object folders that it names. An object with children becomes a group of it and them.
+/// Throws FileError.
 Scene read_scene_folder(const std::filesystem::path& folder, const Progress& progress = {});
 
 /// Reads a scene from the text of scene.json whose objects are elsewhere: `object_of` gives that of a folder name.

@@ -134,6 +134,30 @@ TEST_F(FilmActionTest, KeepsThePicturesIfTheEncoderFails) {
   EXPECT_FALSE(fs::exists(at("a.mp4.pictures")));
 }
 
+// A folder of pictures that was asked for is never taken for the temporary pictures of a video.
+TEST_F(FilmActionTest, VideosDoNotRemovePicturesThatWereAskedFor) {
+  encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");
+  run(film(R"("out": "{here}/a.mp4.pictures")"));
+  const auto pictures = folder_bytes(at("a.mp4.pictures"));
+  expect_error(film(R"("out": "{here}/a.mp4")"), "because they were asked for");
+  EXPECT_EQ(folder_bytes(at("a.mp4.pictures")), pictures);
+  // Also if they were rendered for a video that failed, and asked for later.
+  encoder("exit 7");
+  expect_error(film(R"("out": "{here}/b.mp4")"), "ffmpeg failed with exit status 7");
+  run(film(R"("out": "{here}/b.mp4.pictures")"));
+  encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");
+  expect_error(film(R"("out": "{here}/b.mp4")"), "because they were asked for");
+  EXPECT_TRUE(fs::exists(at("b.mp4.pictures/00004.png")));
+}
+
+TEST_F(FilmActionTest, RenderedPicturesDoNotBecomeFramesOfAnUnfinishedFilm) {
+  run(film(R"("out": "{here}/a")"));
+  fs::remove(at("a/00002.png"));
+  expect_error(R"({"op": "render", "out": "{here}/a/00002.png", "width": 40, "height": 30})",
+               "would be a picture of the film");
+  EXPECT_FALSE(fs::exists(at("a/00002.png")));
+}
+
 TEST_F(FilmActionTest, SaysWhatIsMissingOrDoesNotFit) {
   ::setenv("PATH", at("empty").c_str(), 1);
   expect_error(film(R"("out": "{here}/a.mp4")"), "needs the program ffmpeg");

@@ -177,7 +177,9 @@ TEST_F(Guards, CameraFilesOfOthersAreKept) {
   // Another program's file with pictures of the same names.
   write("same.json", R"({"camera_angle_x": 0.7, "aabb_scale": 4, "frames": [{"file_path": "images/v.png",
             "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
-  for (const char* name : {"sprites.json", "poses.json", "same.json"}) {
+  // Files of Rebake of other kinds.
+  write("rebake_training.json", R"({"software": "Rebake", "plan": "64"})");
+  for (const char* name : {"sprites.json", "poses.json", "same.json", "rebake_training.json"}) {
     const std::string before = read_file(path(name));
     EXPECT_EQ(export_to(name, ""), 1) << name;
     EXPECT_EQ(read_file(path(name)), before);

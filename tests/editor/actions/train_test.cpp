@@ -110,6 +110,25 @@ TEST_F(Train, GoesOnFromACheckpointWithTheSameBytes) {
   EXPECT_EQ(folder_hash(at("parts")), folder_hash(at("whole")));
 }
 
+// The user may save a scene to the folder while the training runs.
+TEST_F(Train, WhatAppearsInTheFolderDuringTheTrainingIsKept) {
+  photograph("transforms_train", 12);
+  int steps = 0;
+  session.progress = Progress([&](std::string_view what, double) {
+    if (what.starts_with("training") && ++steps == 50) fs::copy(at("ball"), at("out"));
+  });
+  const auto saved = folder_bytes(at("ball"));
+  const std::string train =
+      R"({"op": "train", "photographs": "{here}/cap", "side": 16, "steps": 300, "out": "{here}/out"})";
+  expect_error(train, "was written by something else during the training");
+  EXPECT_EQ(folder_bytes(at("out")), saved);
+  session.progress = {};
+  fs::remove_all(at("out"));
+  said();
+  run(train);
+  EXPECT_NE(said().find("goes on from step"), std::string::npos);
+}
+
 TEST_F(Train, ExposuresGetGainsWhereTheyDiffer) {
   photograph("transforms_train", 24, 0, [](int k) { return k % 2 == 0 ? 1.0 : 0.6; });
   run(train_ + R"(, "hold_out": 6})");

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "editor/batch/batch.h"
+#include "editor/batch/batch_scenes.h"
 #include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
@@ -122,6 +123,21 @@ TEST_F(Batch, ResumeKeepsEditedResults) {
   EXPECT_EQ(run()["a"], Status::failed) << "also without resume";
   fs::remove_all(options.out / "a");
   EXPECT_EQ(run()["a"], Status::done);
+}
+
+// Camera files are inputs by their cameras only, but an edit of anything else in them must not be lost either.
+TEST_F(Batch, EditedCameraFilesAreKept) {
+  write_text(options.script, R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}}
+{"op": "export_views", "out": ")" + options.out.string() +
+                                 R"(/{name}.json"}
+)");
+  run();
+  std::string cameras = read_file(options.out / "a.json");
+  cameras.insert(cameras.find('{') + 1, "\"aabb_scale\": 16, ");
+  write_text(options.out / "a.json", cameras);
+  EXPECT_EQ(run()["a"], Status::failed);
+  EXPECT_NE(messages["a"].find("was changed after the batch wrote it"), std::string::npos) << messages["a"];
+  EXPECT_EQ(read_file(options.out / "a.json"), cameras);
 }
 
 // A batch or its process was killed after an export: the list that the process wrote so far tells its outputs.

@@ -174,6 +174,22 @@ TEST_F(DocumentTest, SharedPartsAreCountedOnce) {
   EXPECT_LT(document.history().memory(), one + 20 * 1000) << "a moved node shares its triangles and texels";
 }
 
+// What could not be replayed can be later, with its sources.
+TEST_F(DocumentTest, SourcesOfLostEditsAreNotOverwritten) {
+  {
+    Document document;
+    document.keep_journal(path("j"));
+    import(document);
+    export_scene(scene_of(made_object({.seed = 5})), path("more"), {});
+    const std::string line = R"({"op": "import", "path": ")" + path("more").string() + R"("})";
+    act(document, line.c_str());
+  }
+  std::filesystem::rename(path("sources/ball"), path("moved"));
+  const Document::Recovered recovered = Document::recover(path("j"));
+  EXPECT_EQ(recovered.lost.size(), 2U);
+  EXPECT_THROW(recovered.document.sources().check_file(path("more") / "mlp.json"), FileError);
+}
+
 TEST_F(DocumentTest, RecoversFromJournal) {
   Document document;
   document.keep_journal(path("j"));

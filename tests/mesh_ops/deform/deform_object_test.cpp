@@ -141,6 +141,36 @@ TEST(Deform, FalloffIsUniformAlongTheBorder) {
   }
 }
 
+// A stray vertex far away must not blur the search for the nearest piece of the border.
+TEST(Deform, FalloffDoesNotDependOnFarTriangles) {
+  const auto object = made_object({.columns = 32, .rows = 16});
+  const SpaceDeformation grow = affine(Eigen::Scaling(1.5) * Mat3::Identity());
+  const auto alone = deformed(*object, Affine::Identity(), upper_half(*object), 0.5, grow).object;
+  for (const double far : {1e13, 1e17, 1e25}) {
+    BakedObject more = *object;
+    const Soup& soup = object->sets[0].soup;
+    std::vector<Vec3> positions = soup.positions();
+    std::vector<Vec2> uvs = soup.uvs();
+    std::vector<Face> faces = soup.faces();
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    for (int k = 0; k < 3; ++k) {
+      positions.emplace_back(-far, k, 0);
+      uvs.emplace_back(0.1, 0.1);
+    }
+    faces.push_back({first, first + 1, first + 2});
+    more.sets[0].soup = Soup(positions, uvs, faces);
+    TriangleSet flags = upper_half(*object);
+    flags.insert(flags.begin() + static_cast<std::ptrdiff_t>(soup.triangle_count()), 1);
+    const auto with_stray = deformed(more, Affine::Identity(), flags, 0.5, grow).object;
+    const std::vector<Vec3>&a = alone->sets[0].soup.positions(), &b = with_stray->sets[0].soup.positions();
+    double worst = 0;
+    for (std::size_t f = 0; f < soup.triangle_count(); ++f)
+      for (std::size_t k = 0; k < 3; ++k)
+        worst = std::max(worst, (a[alone->sets[0].soup.faces()[f][k]] - b[with_stray->sets[0].soup.faces()[f][k]]).norm());
+    EXPECT_EQ(worst, 0) << far;
+  }
+}
+
 TEST(Deform, CountsFoldsWithoutNaN) {
   const auto object = made_object();
   // A curvature κ = 2 folds space beyond x = 0.5.

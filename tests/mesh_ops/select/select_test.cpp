@@ -286,7 +286,8 @@ TEST(Select, ParallelRaysSeeTheNearHalf) {
     ASSERT_TRUE(project(centre, at));
     const ViewRay ray = project.ray(at.x, at.y);
     EXPECT_LT((ray.origin + at.depth * ray.direction - centre).norm(), 2.5 / 800);
-    EXPECT_LT((project.eye_for(centre) + at.depth * ray.direction - centre).norm(), 1e-12);
+    const double near = project.camera().near_plane;
+    EXPECT_LT((project.start_for(centre) + (at.depth - near) * ray.direction - centre).norm(), 1e-12);
   }
 }
 

@@ -1,4 +1,5 @@
 // Deforming edits in scripts: results, messages, pictures and files.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -367,6 +368,21 @@ TEST_F(DeformScript, InvalidInputNamesARemedy) {
                "between 1 and 1000");
   run(R"({"op": "lock", "node": "ball"})");
   expect_error(R"({"op": "bend", "node": "ball", "degrees": 10})", "is locked");
+}
+
+// Where the regions of two handles overlap, the surface must follow each of them, not the sum of their motions.
+TEST_F(DeformScript, OverlappingHandlesDoNotAddTheirMotions) {
+  const auto highest = [&](double apart) {
+    const std::string move = R"({{"sphere": {{"center": [{}{}, 1, 0], "radius": 0.45}}, "translate": [0, 1, 0]}})";
+    run(R"({"op": "handles", "node": "ball", "lattice": [6, 6, 6], )"
+        R"("fixed": [{"sphere": {"center": [0, -1, 0], "radius": 0.5}}], "moves": [)" +
+        fmt::format(fmt::runtime(move), "", apart) + ", " + fmt::format(fmt::runtime(move), "-", apart) + "]}");
+    const double top = ball().bounds().max().y();
+    run(R"({"op": "undo"})");
+    return top;
+  };
+  EXPECT_NEAR(highest(0.1), 2, 0.1);
+  EXPECT_NEAR(highest(0.5), 2, 0.15);
 }
 
 }  // namespace

@@ -52,5 +52,43 @@ TEST_F(Merge, OfSeparatedPartsGivesTheOriginalBytes) {
   EXPECT_EQ(exported(document.scene()), bytes);
 }
 
+TEST_F(Merge, RefusesNodesThatFilmsMoveDifferently) {
+  Document document;
+  import(document);
+  act(document, R"({"op": "key", "node": "ball", "time": 1, "degrees": 60})");
+  act(document, R"({"op": "duplicate", "node": "ball", "as": "copy", "translate": [5, 0, 0]})");
+  EXPECT_THROW(act(document, R"({"op": "merge", "nodes": ["ball", "copy"]})"), EditError) << "another axis";
+  act(document, R"({"op": "duplicate", "node": "ball", "as": "same"})");
+  act(document, R"({"op": "merge", "nodes": ["ball", "same"]})");
+  act(document, R"({"op": "key", "node": "copy", "time": 1, "degrees": 60, "remove": true})");
+  act(document, R"({"op": "duplicate", "node": "copy", "as": "still"})");
+  act(document, R"({"op": "group", "nodes": ["still"], "as": "g"})");
+  act(document, R"({"op": "key", "node": "g", "time": 1, "position": [0, 1, 0]})");
+  EXPECT_THROW(act(document, R"({"op": "merge", "nodes": ["copy", "still"]})"), EditError) << "a group moves one";
+}
+
+TEST_F(Merge, KeepsUnknownMembersAndSaysWhatChanges) {
+  Document document;
+  import(document);
+  act(document, R"({"op": "duplicate", "node": "ball", "as": "copy"})");
+  Scene scene = document.scene();
+  ASSERT_EQ(scene.roots.size(), 2U);
+  for (std::size_t k = 0; k < 2; ++k)
+    scene = with_changed(scene, scene.roots[k]->id, [&](Node& node) {
+      auto object = std::make_shared<BakedObject>(*node.object);
+      object->other_members = {{"author", k == 0 ? "\"a\"" : "\"b\""}, {k == 0 ? "first" : "second", "1"}};
+      node.object = object;
+      node.visible = k == 0;
+    });
+  const nlohmann::json line{{"op", "merge"}, {"nodes", {scene.roots[0]->name, scene.roots[1]->name}}};
+  const Outcome merged = carry_out(scene, read_edit(line, scene), {});
+  const auto& members = merged.scene.roots.front()->object->other_members;
+  EXPECT_EQ(members, (std::map<std::string, std::string>{{"author", "\"a\""}, {"first", "1"}, {"second", "1"}}));
+  std::string said;
+  for (const std::string& one : merged.report.lines) said += one + "\n";
+  EXPECT_NE(said.find("another value of \"author\""), std::string::npos) << said;
+  EXPECT_NE(said.find("was hidden"), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace rebake::test

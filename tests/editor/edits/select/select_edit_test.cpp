@@ -167,5 +167,36 @@ TEST(SelectEdit, TransparentTrianglesDoNotCountInTheMeanColour) {
   }
 }
 
+TEST(SelectEdit, RotatedCopiesHaveTheSameSize) {
+  auto object = std::make_shared<BakedObject>(*made_object());
+  // Two triangles of area 0.5, the second one turned.
+  const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0.6, 0.8}};
+  object->sets = {
+      {Soup(positions, std::vector<Vec2>(4, Vec2(0.5, 0.5)), {Face{0, 1, 2}, Face{0, 1, 3}}), object->sets[0].texels}};
+  const Scene scene = scene_of(object, "two");
+  for (const double y : {0.2, 0.19}) {
+    const nlohmann::json line{{"op", "select_like"}, {"point", {0.2, y, y == 0.2 ? 0.0 : 0.3}}, {"size", 1}};
+    EXPECT_EQ(count(*apply(scene, read_edit(line, scene)).scene.roots[0]->selection), 2U) << y;
+  }
+}
+
+// A triangle that meets any criterion is selected, so another criterion never selects fewer.
+TEST(SelectEdit, UnneededByTwoCriteriaIsTheUnionOfBoth) {
+  Scene scene = scene_of(made_object({.holes = false}), "ball");
+  const auto act = [&](const nlohmann::json& line) {
+    scene = apply(scene, read_edit(line, scene)).scene;
+    const auto& selection = scene.roots[0]->selection;
+    return selection ? *selection : TriangleSet(scene.roots[0]->object->triangle_count(), 0);
+  };
+  act({{"op", "view"}, {"name", "front"}, {"camera", {{"eye", {0, 0, 5}}, {"target", {0, 0, 0}}}}});
+  const nlohmann::json from{{"op", "select_unneeded"}, {"unseen_from", {"front"}}};
+  const TriangleSet behind = act(from);
+  ASSERT_GT(count(behind), 50U);
+  nlohmann::json both = from;
+  both["unseen"] = 50;
+  const TriangleSet wider = act(both);
+  for (std::size_t f = 0; f < behind.size(); ++f) EXPECT_GE(wider[f], behind[f]);
+}
+
 }  // namespace
 }  // namespace rebake::test

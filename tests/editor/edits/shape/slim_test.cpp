@@ -241,6 +241,30 @@ TEST(Slim, KeepsObjectsShared) {
 }
 
 // One of two equal triangles stays, whichever of them rays hit.
+TEST(Slim, KeepsStoredSelectionsThatKeyframesBend) {
+  const auto bent = [](const char* selection) {
+    Scene scene = scene_of(nested());
+    return with_changed(scene, scene.roots[0]->id, [&](Node& node) {
+      node.saved_selections["arm"] = std::make_shared<const TriangleSet>(node.object->triangle_count(), 1);
+      NodeMotion motion;
+      motion.bends["sway"].selection = selection;
+      motion.bends["sway"].degrees = {{0, 10}};
+      node.motion = std::make_shared<const NodeMotion>(motion);
+    });
+  };
+  Slim front;  // the far side goes, so that repacking is worth it
+  front.eyes = BoxRegion{{-0.1, -0.1, 3}, {0.1, 0.1, 3.1}};
+  front.rays = 512;
+  const auto slimmed = [&](const Scene& scene) { return carry_out(scene, Edit(front), {}); };
+  ASSERT_TRUE(slimmed(bent("")).scene.roots[0]->saved_selections.empty()) << "repacking changes the order";
+  const Outcome kept = slimmed(bent("arm"));
+  ASSERT_TRUE(kept.scene.roots[0]->saved_selections.contains("arm"));
+  EXPECT_EQ(kept.scene.roots[0]->saved_selections.at("arm")->size(), kept.scene.roots[0]->object->triangle_count());
+  std::string said;
+  for (const std::string& line : kept.report.lines) said += line + "\n";
+  EXPECT_NE(said.find("visibility was computed at rest"), std::string::npos) << said;
+}
+
 TEST(Slim, KeepsOneOfEqualTriangles) {
   auto object = std::make_shared<BakedObject>(*made_object({.columns = 32, .rows = 16, .holes = false}));
   const std::size_t single = object->triangle_count();

@@ -13,8 +13,10 @@
 #include "editor/edits/nodes/rename.h"
 #include "editor/edits/nodes/transform.h"
 #include "editor/edits/select/select.h"
+#include "editor/edits/select/select_picture.h"
 #include "editor/edits/select/select_triangles.h"
 #include "editor/edits/support.h"
+#include "editor/gui/state/commands.h"
 #include "editor/gui/state/editor_context.h"
 #include "editor/gui/state/lost_work.h"
 #include "mesh_ops/base/files.h"
@@ -300,6 +302,101 @@ TEST_F(EditorContextTest, AnEditThatRunsWhileAProjectIsOpenedGoesToTheTrash) {
   ASSERT_EQ(trash.size(), 1U);
   EXPECT_NE(read_file(trash.front()).find("slow"), std::string::npos);
   EXPECT_TRUE(find(editor->scene(), std::string("ball"))) << "the project is open";
+}
+
+TEST_F(EditorContextTest, SavingWhileAnotherProjectOpensDoesNotReplaceTheFirst) {
+  const std::filesystem::path first = home.path() / "first.rebake", second = home.path() / "second.rebake";
+  editor->project.save(first);
+  wait();
+  Rename edit;
+  edit.node = {id("ball")};
+  edit.name = "renamed";
+  editor->edit(edit);
+  wait();
+  editor->project.save(second);
+  wait();
+  editor->project.open({first.string()});
+  wait();
+  const std::string before = read_file(first);
+  std::atomic<bool> pressed = false;
+  editor->jobs.worker.start("slow", [&pressed](Session&) {
+    while (!pressed) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  });
+  editor->project.open({second.string()});
+  editor->project.save(editor->project.path);
+  editor->edit(Hide{NodeRef{id("box")}});
+  pressed = true;
+  wait();
+  EXPECT_EQ(read_file(first), before);
+  EXPECT_EQ(editor->project.path, second);
+  EXPECT_FALSE(editor->project.unsaved());
+  EXPECT_TRUE(find(editor->scene(), std::string("renamed")));
+  EXPECT_TRUE(find(editor->scene(), std::string("box"))->visible) << "the key was meant for the first project";
+}
+
+// Edits made from what the window shows must not undo what a running job is about to change.
+TEST_F(EditorContextTest, EditsOfStatesThatAJobChangesAreRefused) {
+  std::atomic<bool> made = false;
+  const NodeId ball = id("ball");
+  editor->jobs.worker.start("slow edit", [&made, ball](Session& session) {
+    while (!made) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    Transform move;
+    move.node = NodeRef{ball};
+    move.translate = Vec3(1, 0, 0);
+    session.edit(move);
+  });
+  Rename edit;
+  edit.node = {ball};
+  edit.name = "late";
+  const auto same_place = [ball, from = find(editor->scene(), ball)->to_parent](const Scene& scene) {
+    return find(scene, ball)->to_parent.matrix() == from.matrix();
+  };
+  editor->edit_unchanged(edit, same_place);
+  made = true;
+  wait();
+  EXPECT_EQ(find(editor->scene(), ball)->name, "ball");
+  EXPECT_TRUE(editor->messages.log().back().failed);
+  editor->edit_unchanged(edit, [](const Scene&) { return true; });
+  wait();
+  EXPECT_EQ(find(editor->scene(), ball)->name, "late");
+}
+
+TEST_F(EditorContextTest, ViewsStoredDuringAJobGetDifferentNames) {
+  std::atomic<bool> stored = false;
+  editor->jobs.worker.start("slow", [&stored](Session&) {
+    while (!stored) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  });
+  store_view(*editor);
+  editor->view.camera.eye.x() += 1;
+  store_view(*editor);
+  stored = true;
+  wait();
+  EXPECT_EQ(editor->scene().views.size(), 2U);
+}
+
+TEST_F(EditorContextTest, VisibleSelectionsAreAllThatTheSelectionConsistsOf) {
+  const auto picture = [&](const char* node, SelectMode mode, bool through = false) {
+    SelectPicture edit;
+    edit.node = NodeRef{id(node)};
+    edit.picture.camera = editor->view.camera;
+    edit.picture.size = {64, 64};
+    edit.picture.depth = Interval{0, 1000};
+    edit.mode = mode;
+    edit.through = through;
+    return Edit(edit);
+  };
+  const auto after = [&](const std::vector<Edit>& edits) {
+    editor->edits(edits);
+    wait();
+    return editor->visible_selections().size();
+  };
+  using enum SelectMode;
+  EXPECT_EQ(after({picture("ball", set), picture("box", set)}), 2U) << editor->messages.log().back().text;
+  EXPECT_EQ(after({picture("ball", add)}), 3U);
+  EXPECT_EQ(after({picture("ball", remove)}), 0U) << "occluded triangles may be left of earlier ones";
+  EXPECT_EQ(after({picture("ball", set)}), 1U);
+  EXPECT_EQ(after({picture("ball", add, true)}), 0U);
+  EXPECT_EQ(after({picture("ball", add)}), 0U);
 }
 
 }  // namespace

@@ -65,9 +65,30 @@ TEST_F(WorkerTest, CancelStopsTheJobAndDropsTheQueue) {
   wait();
   EXPECT_FALSE(second);
   const auto messages = worker.take_messages();
-  ASSERT_EQ(messages.size(), 1U);
-  EXPECT_EQ(messages[0].kind, Worker::Message::Kind::said) << "a cancelled job has not failed";
-  EXPECT_NE(messages[0].text.find("cancelled"), std::string::npos);
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_EQ(messages[0].text, "Not begun, and dropped too: next");
+  EXPECT_EQ(messages[1].kind, Worker::Message::Kind::said) << "a cancelled job has not failed";
+  EXPECT_NE(messages[1].text.find("cancelled"), std::string::npos);
+}
+
+// A key pressed while a project opens is meant for the document that is still shown.
+TEST_F(WorkerTest, JobsForADocumentDoNotRunOnTheNextOne) {
+  bool ran = false, told = false, any = false;
+  worker.start(
+      "open", [](Session& session) { ++session.document_number; }, {}, {}, Worker::On::any_document);
+  worker.start(
+      "save", [&](Session&) { ran = true; }, {}, [&] { told = true; });
+  worker.start(
+      "end", [&](Session&) { any = true; }, {}, {}, Worker::On::any_document);
+  wait();
+  for (const auto& then : worker.take_finished()) then();
+  EXPECT_FALSE(ran);
+  EXPECT_TRUE(told && any);
+  ASSERT_EQ(worker.take_messages().size(), 1U);
+  worker.saw(*worker.snapshot());
+  worker.start("save", [&](Session&) { ran = true; });
+  wait();
+  EXPECT_TRUE(ran);
 }
 
 // A preview is shown until its job has ended, so its owner must hear of every end.

@@ -39,6 +39,19 @@ TEST(CageDeformation, IdentityIsBitExactAndDuplicatesMoveTogether) {
   }
 }
 
+// A point that is no finite number of cage diagonals away has no coordinates; it must not take those of another.
+TEST(CageDeformation, PointsTooFarForTheCageAreNotFinite) {
+  Cage cage = dented();
+  for (Vec3& v : cage.vertices) v *= 1e-10;
+  std::vector<Vec3> moved = cage.vertices;
+  for (Vec3& v : moved) v *= 2;
+  const std::vector<Vec3> points{Vec3(0, 0, 0), Vec3(1e305, 0, 0), cage.vertices[0]};
+  const DeformedPoints result = deform_points(*mean_value_coordinates(cage), cage, moved, points, false);
+  EXPECT_TRUE(result.points[0].allFinite());
+  EXPECT_FALSE(result.points[1].allFinite());
+  EXPECT_EQ(result.points[2], moved[0]);
+}
+
 // Numbers of vertices belong to the user, so that unused ones stay in the cage; they must not count.
 TEST(CageDeformation, VerticesThatNoFaceUsesChangeNoBits) {
   for (const auto& [name, cage] : hard_cages()) {

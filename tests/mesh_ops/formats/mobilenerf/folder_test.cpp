@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/polar.h"
@@ -192,6 +195,70 @@ TEST(Folder, SavedSceneKeepsEveryNode) {
   ASSERT_NE(b.rotations(), nullptr);
   for (std::size_t f = 0; f < a.faces().size(); ++f)
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ((*a.rotations())[a.faces()[f][k]], (*b.rotations())[b.faces()[f][k]]);
+}
+
+// Other programs may write objects with children, which no edit expects.
+TEST(Folder, ObjectsWithChildrenAreReadAsGroupsInTheSamePlaces) {
+  const TemporaryFolder temporary;
+  Scene scene = scene_of(made_object(), "upper");
+  Node lower;
+  lower.name = "lower";
+  lower.object = scene.roots[0]->object;
+  lower.to_parent = Affine(Eigen::Translation3d(0, -2, 0));
+  scene = with_added(scene, lower, NodeId::none, 9);
+  const Affine place(Eigen::Translation3d(5, 0, 0) * Eigen::AngleAxisd(0.5, Vec3::UnitY()));
+  scene = with_changed(scene, scene.roots[0]->id, [&](Node& node) {
+    node.to_parent = place;
+    node.locked = true;
+    NodeMotion motion;
+    motion.place.push_back({0, place});
+    motion.bends["sway"].degrees.push_back({0, 10});
+    node.motion = std::make_shared<const NodeMotion>(motion);
+  });
+  format_named("rebake").write(scene, temporary.path() / "s", {}, {});
+  const fs::path file = temporary.path() / "s/scene.json";
+  nlohmann::json root = nlohmann::json::parse(read_file(file));
+  root["nodes"][0]["children"] = nlohmann::json::array({root["nodes"][1]});
+  root["nodes"].erase(1);
+  std::ofstream(file) << root;
+
+  const auto nodes = placed_nodes(read_any(temporary.path() / "s", Axes::y_up));
+  ASSERT_EQ(nodes.size(), 3U);
+  const Node &group = *nodes[0].node, &upper = *nodes[1].node;
+  EXPECT_FALSE(group.object);
+  EXPECT_EQ(group.name, "upper and children");
+  EXPECT_EQ(upper.name, "upper");
+  EXPECT_EQ(nodes[2].node->name, "lower");
+  EXPECT_EQ(upper.object, nodes[2].node->object);
+  EXPECT_EQ(nodes[1].to_world.matrix(), place.matrix());
+  EXPECT_EQ(nodes[2].to_world.matrix(), (place * lower.to_parent).matrix());
+  EXPECT_TRUE(nodes[1].locked && nodes[2].locked);
+  ASSERT_TRUE(group.motion && upper.motion);
+  EXPECT_EQ(group.motion->place.size(), 1U);
+  EXPECT_TRUE(group.motion->bends.empty() && upper.motion->place.empty());
+  EXPECT_EQ(upper.motion->bends.size(), 1U);
+}
+
+TEST(Folder, ExportsSayWhatTheyLeaveOut) {
+  const TemporaryFolder temporary;
+  Scene scene = scene_of(made_object(), "ball");
+  scene = with_changed(scene, scene.roots[0]->id, [](Node& node) {
+    node.locked = true;
+    node.saved_selections["all"] = std::make_shared<const TriangleSet>(node.object->triangle_count(), 1);
+    auto object = std::make_shared<BakedObject>(*node.object);
+    object->other_members = {{"author", "\"a\""}};
+    node.object = object;
+  });
+  Node other = *scene.roots[0];
+  other.id = NodeId::none;
+  auto object = std::make_shared<BakedObject>(*other.object);
+  object->other_members = {{"author", "\"b\""}};
+  other.object = object;
+  scene = with_added(scene, other, NodeId::none, 9);
+  std::string said;
+  for (const std::string& note : export_scene(scene, temporary.path() / "out", {}).notes) said += note + "\n";
+  for (const char* part : {"locks of nodes", "stored selections", "\"author\" of \"ball.2\""})
+    EXPECT_NE(said.find(part), std::string::npos) << part << " in " << said;
 }
 
 TEST(Folder, FeaturePngsPreserveBytesWithoutColourChunks) {

@@ -7,6 +7,7 @@
 
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/formats.h"
+#include "mesh_ops/light/lighting.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
