@@ -83,7 +83,8 @@ TEST_F(ComparePhotographs, CamerasOfOtherScaleAndWorldAreBroughtToTheScene) {
 
 TEST_F(ComparePhotographs, RenderedPhotographsOfAnotherCaptureAreKept) {
   fs::create_directories(at("synthetic"));
-  for (const char* name : {"transforms.json", "a.png", "b.png"}) fs::copy_file(at("cap") / name, at("synthetic") / name);
+  for (const char* name : {"transforms.json", "a.png", "b.png"})
+    fs::copy_file(at("cap") / name, at("synthetic") / name);
   const auto before = folder_bytes(at("synthetic"));
   expect_error(compare_ + R"(, "out": "{here}/synthetic"})", "of the capture in its folder");
   EXPECT_EQ(folder_bytes(at("synthetic")), before);

@@ -105,8 +105,8 @@ TEST_F(LightModel, NeverReplacesOtherFiles) {
 
 TEST_F(LightModel, ThatIsUsedIsNotReplaced) {
   run(import);
-  const std::string train = R"({"op": "train_light", "edits": [{"op": "bend", "degrees": 60}], )" + few +
-                            R"(, "out": "{here}/m.light"})";
+  const std::string train =
+      R"({"op": "train_light", "edits": [{"op": "bend", "degrees": 60}], )" + few + R"(, "out": "{here}/m.light"})";
   run(train);
   const std::string model = read_file(folder_.path() / "m.light");
   // Line by line, as in the window and in Python, nothing knows the next one.

@@ -128,7 +128,8 @@ TEST_F(Batch, ResumeKeepsEditedResults) {
 // Camera files are inputs by their cameras only, but an edit of anything else in them must not be lost either.
 TEST_F(Batch, EditedCameraFilesAreKept) {
   write_text(options.script, R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}}
-{"op": "export_views", "out": ")" + options.out.string() +
+{"op": "export_views", "out": ")" +
+                                 options.out.string() +
                                  R"(/{name}.json"}
 )");
   run();
@@ -138,6 +139,20 @@ TEST_F(Batch, EditedCameraFilesAreKept) {
   EXPECT_EQ(run()["a"], Status::failed);
   EXPECT_NE(messages["a"].find("was changed after the batch wrote it"), std::string::npos) << messages["a"];
   EXPECT_EQ(read_file(options.out / "a.json"), cameras);
+}
+
+// The variable {name} of a file is its name without the extension, for the batch and for its processes.
+TEST_F(Batch, MeshFilesAreNamedWithoutTheirExtension) {
+  fs::create_directories(folder_.path() / "m");
+  const char* const mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  write_text(folder_.path() / "m/a.obj", mesh);
+  write_text(folder_.path() / "m/b.obj", mesh);
+  write_text(options.script, R"({"op": "save", "out": ")" + options.out.string() + R"(/{name}"}
+)");
+  options.scenes = {(folder_.path() / "m/*.obj").string()};
+  EXPECT_EQ(run(), (std::map<std::string, Status>{{"a", Status::done}, {"b", Status::done}})) << messages["a"];
+  EXPECT_TRUE(fs::exists(options.out / "a"));
+  EXPECT_FALSE(fs::exists(options.out / "a.obj"));
 }
 
 // A batch or its process was killed after an export: the list that the process wrote so far tells its outputs.

@@ -166,7 +166,8 @@ TEST(Deform, FalloffDoesNotDependOnFarTriangles) {
     double worst = 0;
     for (std::size_t f = 0; f < soup.triangle_count(); ++f)
       for (std::size_t k = 0; k < 3; ++k)
-        worst = std::max(worst, (a[alone->sets[0].soup.faces()[f][k]] - b[with_stray->sets[0].soup.faces()[f][k]]).norm());
+        worst =
+            std::max(worst, (a[alone->sets[0].soup.faces()[f][k]] - b[with_stray->sets[0].soup.faces()[f][k]]).norm());
     EXPECT_EQ(worst, 0) << far;
   }
 }

@@ -241,6 +241,50 @@ TEST_F(Script, DeleteAndFillClosesWhatItRemoves) {
                "all triangles are selected");
 }
 
+// Keyframed bends move stored selections: a patch amid one must follow.
+TEST_F(Script, PatchesBelongToTheStoredSelectionsAroundThem) {
+  run(import + R"({"op": "select", "node": "ball", "half_space": {"point": [0, 0, 0], "normal": [0, 0, 1]}}
+{"op": "store_selection", "name": "front"}
+{"op": "select", "node": "ball", "sphere": {"center": [1, 0, 0.2], "radius": 0.6}}
+{"op": "store_selection", "name": "side"}
+{"op": "select", "node": "ball", "sphere": {"center": [0, 0, 1], "radius": 0.5}}
+{"op": "delete_and_fill"})");
+  const BakedObject& object = *node("ball")->object;
+  const std::size_t patch = object.sets.back().soup.triangle_count(), all = object.triangle_count();
+  ASSERT_GT(patch, 0U);
+  const auto in_patch = [&](const char* name) {
+    const TriangleSet& flags = *node("ball")->saved_selections.at(name);
+    EXPECT_EQ(flags.size(), all);
+    return static_cast<std::size_t>(std::count(flags.end() - static_cast<std::ptrdiff_t>(patch), flags.end(), 1));
+  };
+  EXPECT_EQ(in_patch("front"), patch);
+  EXPECT_EQ(in_patch("side"), 0U);
+}
+
+TEST(PatchTexture, PatchesOfManyTexelsStillHaveTheirOwn) {
+  // 40,000 triangles of 63 texels each would need three pages.
+  HolePatch patch;
+  std::vector<PatchFeatures> features(1);
+  for (std::uint32_t k = 0; k < 40000; ++k) {
+    for (const auto& [x, y] : {std::pair(0.0, 0.0), std::pair(1.0, 0.0), std::pair(0.0, 1.0)}) {
+      patch.vertices.emplace_back(x, y, k);
+      features[0].push_back({static_cast<double>(1 + k % 250), 0, 0, 0, 0, 0, 0, 0});
+    }
+    patch.faces.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  std::vector<std::size_t> patch_of;
+  const TextureSet set = textured_patches({patch}, features, 0.01, AlphaCode::plain, patch_of);
+  EXPECT_EQ(patch_of.size(), 40000U);
+  const TexelReader texels(*set.texels);
+  for (std::size_t f = 0; f < set.soup.triangle_count(); f += 97) {
+    const Vec2& uv = set.soup.uvs()[set.soup.faces()[f][0]];
+    const int x = static_cast<int>(uv.x() * set.texels->width()),
+              y = static_cast<int>((1 - uv.y()) * set.texels->height());
+    const auto number = static_cast<std::uint32_t>(set.soup.positions()[set.soup.faces()[f][0]].z());
+    ASSERT_EQ(texels.at(x, y).feat0[0], 1 + number % 250) << f;
+  }
+}
+
 TEST(FillHoles, WorksInNerf2MeshFolders) {
   const TemporaryFolder folder;
   write_nerf2mesh_example(folder.path() / "n");

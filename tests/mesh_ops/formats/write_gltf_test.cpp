@@ -379,6 +379,19 @@ TEST_F(GltfFeatures, TheSameSceneIsReadBack) {
   EXPECT_EQ(read_file(path("a.glb")), read_file(path("b.glb")));
 }
 
+TEST_F(GltfFeatures, UnknownMembersKeepTheirSpelling) {
+  const std::map<std::string, std::string> members{{"id", "123456789012345678901"}, {"note", "\"a\""}};
+  Scene scene = document_.scene();
+  const NodeId other = find(scene, "other")->id;
+  scene = with_changed(scene, other, [&](Node& node) {
+    auto object = std::make_shared<BakedObject>(*node.object);
+    object->other_members = members;
+    node.object = object;
+  });
+  write_gltf_features(scene, path("a.glb"), {}, {});
+  EXPECT_EQ(find(read_any(path("a.glb"), {}), "other")->object->other_members, members);
+}
+
 TEST_F(GltfFeatures, HiddenNodesAreLeftOutWithANote) {
   act(document_, R"({"op": "hide", "node": "copy"})");
   const ExportReport report = write_gltf_features(document_.scene(), path("a.glb"), {}, {});

@@ -136,5 +136,28 @@ TEST_F(KeyTest, SaysWhatIsWrong) {
                "no triangle is inside");
 }
 
+TEST_F(KeyTest, SaysThatAStoredSelectionOfABendHasChanged) {
+  std::string said;
+  session.say = [&](const std::string& line) { said += line + "\n"; };
+  run(import + R"({"op": "select", "node": "ball", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]}}
+{"op": "store_selection", "name": "top"}
+{"op": "key", "node": "ball", "time": 1, "degrees": 30, "selection": "top", "track": "nod"}
+{"op": "store_selection", "name": "top"})");
+  EXPECT_EQ(said.find("nod"), said.rfind("nod")) << "only the key itself: " << said;
+  run(R"({"op": "select", "node": "ball", "half_space": {"point": [0, 0.5, 0], "normal": [0, 1, 0]}}
+{"op": "store_selection", "name": "top"})");
+  EXPECT_NE(said.find("now moves the triangles of the stored selection \"top\""), std::string::npos) << said;
+}
+
+TEST_F(KeyTest, SaysThatNodesHaveLeftAMovingGroup) {
+  std::string said;
+  session.say = [&](const std::string& line) { said += line + "\n"; };
+  run(import + R"({"op": "group", "nodes": ["ball"], "as": "g"}
+{"op": "key", "node": "g", "time": 1, "position": [1, 0, 0]})");
+  EXPECT_EQ(said.find("no longer move"), std::string::npos) << said;
+  run(R"({"op": "reorder", "node": "ball", "index": 0, "top": true})");
+  EXPECT_NE(said.find("films no longer move \"ball\""), std::string::npos) << said;
+}
+
 }  // namespace
 }  // namespace rebake::test

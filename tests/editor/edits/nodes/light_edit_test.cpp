@@ -6,6 +6,7 @@
 #include "editor/actions/plain_scene.h"
 #include "editor/actions/session.h"
 #include "editor/document/project.h"
+#include "editor/edits/nodes/light.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/rebake_scene/scene_folder.h"
 #include "mesh_ops/light/lighting.h"
@@ -81,6 +82,32 @@ Scene last_scene(const fs::path& project, const SourceLinks& links = {}) {
   read_project(
       project, [&](const History::Entry&, const Scene& after) { last = after; }, links);
   return last;
+}
+
+// A scene holds its environment map, so changes of other settings must not need the map's file.
+TEST_F(DocumentTest, LightOfAnImportedSceneChangesWithoutThePicturesFile) {
+  write_light_picture(path("sky.exr"), 64, [](const Vec3& d) { return Radiance(1 + d.x(), 1, 1); });
+  {
+    Document first;
+    import(first);
+    act(first, {{"op", "light"}, {"picture", path("sky.exr").string()}});
+    format_named("rebake").write(first.scene(), path("saved"), {}, {});
+  }
+  fs::remove(path("sky.exr"));
+  {
+    Document document;
+    document.keep_journal(path("journal"));
+    act(document, {{"op", "import"}, {"path", path("saved").string()}});
+    SceneLight wanted = *document.scene().light;
+    wanted.rays = 512;
+    document.edit(light_edit(wanted, document.scene()));
+    act(document, {{"op", "background"}, {"color", {1, 0, 0}}});
+  }
+  const Document::Recovered again = Document::recover(path("journal"));
+  EXPECT_TRUE(again.gone.empty());
+  EXPECT_EQ(again.edits, 3U);
+  EXPECT_EQ(again.document.scene().light->rays, 512);
+  EXPECT_NE(again.document.scene().light->picture, nullptr);
 }
 
 TEST_F(DocumentTest, EnvironmentMapIsASource) {

@@ -90,5 +90,35 @@ TEST_F(Merge, KeepsUnknownMembersAndSaysWhatChanges) {
   EXPECT_NE(said.find("was hidden"), std::string::npos) << said;
 }
 
+// A part that is united with its rest gets the rest's values back, but not the numbers of the bodies.
+TEST_F(Merge, PartsOfAnObjectKeepTheirBodyBehindAnother) {
+  Document document;
+  import(document);
+  act(document, R"({"op": "duplicate", "node": "ball", "as": "front"})");
+  // Another body: the same triangles elsewhere.
+  Scene scene = with_changed(document.scene(), find(document.scene(), "front")->id, [](Node& node) {
+    auto object = std::make_shared<BakedObject>(*node.object);
+    std::vector<Vec3> moved = object->sets[0].soup.positions();
+    for (Vec3& p : moved) p.x() += 5;
+    object->sets[0].soup = Soup(moved, object->sets[0].soup.uvs(), object->sets[0].soup.faces());
+    object->origin = nullptr;
+    node.object = object;
+  });
+  const auto act_on = [&](const char* line) {
+    scene = carry_out(scene, read_edit(nlohmann::json::parse(line), scene), {}).scene;
+  };
+  act_on(R"({"op": "select", "node": "ball", "box": {"min": [-2, 0, -2], "max": [2, 2, 2]}})");
+  act_on(R"({"op": "separate", "node": "ball", "as": "part"})");
+  act_on(R"({"op": "merge", "nodes": ["front", "ball", "part"]})");
+  const BakedObject& merged = *find(scene, "front")->object;
+  ASSERT_EQ(bodies_of(merged).size(), 2U);
+  for (const TextureSet& set : merged.sets) {
+    const auto* body = set.soup.face_attributes().find<std::uint16_t>(BakedObject::body);
+    ASSERT_NE(body, nullptr);
+    for (std::size_t f = 0; f < set.soup.triangle_count(); ++f)
+      EXPECT_EQ((*body)[f], set.soup.positions()[set.soup.faces()[f][0]].x() > 2.5 ? 0 : 1) << f;
+  }
+}
+
 }  // namespace
 }  // namespace rebake::test

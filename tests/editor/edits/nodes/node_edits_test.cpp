@@ -199,6 +199,35 @@ TEST_F(NodeEdits, SetsGroundByHeightFootPointsOrSelection) {
   expect_error(R"({"op": "ground", "points": [[0, 0, 0], [1, 1, 1]]})", "three points");
 }
 
+// The box of a rotated ball is larger than the ball.
+TEST_F(NodeEdits, TheLowestPointIsThatOfTrianglesNotOfBoxes) {
+  run(import + R"({"op": "transform", "node": "ball", "rotate": {"axis": [0, 0, 1], "degrees": 45}}
+{"op": "ground", "foot": true})");
+  EXPECT_NEAR(session.scene().ground.height, -1, 0.05);
+}
+
+TEST_F(NodeEdits, NodesNamedTwiceDoNotCountTwice) {
+  run(import + R"({"op": "import", "path": "{here}/other", "as": "other"}
+{"op": "transform", "node": "other", "translate": [5, 1, 0]}
+{"op": "group", "nodes": ["ball", "other"], "as": "g"})");
+  expect_error(R"({"op": "align", "nodes": ["ball", "other", "other"], "axis": "x", "to": "least"})",
+               "must not name a node twice");
+  run(R"({"op": "select", "box": {"min": [-9, 0.5, -9], "max": [9, 9, 9]}}
+{"op": "ground", "selection": true, "nodes": ["g"]})");
+  const Ground once = session.scene().ground;
+  run(R"({"op": "ground", "selection": true, "nodes": ["g", "other"]})");
+  EXPECT_EQ(session.scene().ground, once);
+}
+
+TEST_F(NodeEdits, GroupsWithoutANameDoNotRenameTheirChildren) {
+  run(import + R"({"op": "import", "path": "{here}/other", "as": "other"}
+{"op": "group", "nodes": ["ball"]}
+{"op": "group", "nodes": ["group", "other"]})");
+  ASSERT_NE(node("group"), nullptr);
+  EXPECT_EQ(node("group")->children.front()->name, "ball");
+  EXPECT_EQ(node("group.2")->children.size(), 2U);
+}
+
 TEST_F(NodeEdits, DuplicateTranslatesTheCopy) {
   run(import + R"({"op": "transform", "node": "ball", "translate": [1, 0, 0], "scale": 2})"
                "\n"

@@ -198,5 +198,39 @@ TEST(SelectEdit, UnneededByTwoCriteriaIsTheUnionOfBoth) {
   for (std::size_t f = 0; f < behind.size(); ++f) EXPECT_GE(wider[f], behind[f]);
 }
 
+TEST(SelectEdit, SpheresInTheBoundsOfAFlatObjectDoNotDependOnItsSize) {
+  for (const double size : {0.1, 1.0, 100.0}) {
+    auto object = std::make_shared<BakedObject>(*made_object());
+    const std::vector<Vec3> floor{{0, 0, 0}, {size, 0, 0}, {size, 0, size}, {0, 0, size}};
+    object->sets = {
+        {Soup(floor, std::vector<Vec2>(4, Vec2(0.5, 0.5)), {Face{0, 1, 2}, Face{0, 2, 3}}), object->sets[0].texels}};
+    const Scene scene = scene_of(object, "floor");
+    const nlohmann::json line{
+        {"op", "select"}, {"frame", "bounds"}, {"sphere", {{"center", {0.5, 0.5, 0.5}}, {"radius", 0.3}}}};
+    const auto& selection = apply(scene, read_edit(line, scene)).scene.roots[0]->selection;
+    ASSERT_NE(selection, nullptr) << size;
+    EXPECT_EQ(count(*selection), 2U) << size;
+  }
+}
+
+// What lies before the camera's near plane is not drawn, so it hides nothing from the eraser.
+TEST(SelectEdit, ErasingSeesThroughWhatTheNearPlaneCuts) {
+  Scene scene = scene_of(made_object({.holes = false}), "ball");
+  Node wall;
+  wall.name = "wall";
+  wall.object = made_object({.radius = 3, .holes = false});
+  scene = with_added(scene, wall, NodeId::none, 9);
+  const auto erased = [&](double near) {
+    const nlohmann::json line{{"op", "erase"},
+                              {"node", "ball"},
+                              {"depth", {0, 100}},
+                              {"size", {64, 64}},
+                              {"camera", {{"eye", {0, 0, 8}}, {"target", {0, 0, 0}}, {"near", near}, {"far", 20}}}};
+    return apply(scene, read_edit(line, scene)).scene.roots[0]->object != scene.roots[0]->object;
+  };
+  EXPECT_TRUE(erased(6));
+  EXPECT_THROW(erased(1), EditError) << "the larger ball hides it";
+}
+
 }  // namespace
 }  // namespace rebake::test

@@ -399,5 +399,87 @@ TEST_F(EditorContextTest, VisibleSelectionsAreAllThatTheSelectionConsistsOf) {
   EXPECT_EQ(after({picture("ball", add)}), 0U);
 }
 
+TEST_F(EditorContextTest, ClicksInTheHistoryReachTheirStepWhateverIsQueued) {
+  for (const char* name : {"a", "b", "c", "d"}) {
+    Rename edit;
+    edit.node = {id("box")};
+    edit.name = name;
+    editor->edit(edit);
+    wait();
+    edit.name = "box";
+    editor->edit(edit);
+    wait();
+  }
+  const std::size_t steps = editor->now->steps_done;
+  editor->go_to(steps - 3);
+  editor->go_to(steps - 3);
+  wait();
+  EXPECT_EQ(editor->now->steps_done, steps - 3) << "a double click";
+  editor->go_to(steps);
+  wait();
+  EXPECT_EQ(editor->now->steps_done, steps);
+  // An edit that is still queued: the click was meant for other steps.
+  Rename edit;
+  edit.node = {id("box")};
+  edit.name = "late";
+  editor->go_to(steps - 2);
+  wait();
+  editor->edit(edit);
+  editor->go_to(steps);
+  wait();
+  EXPECT_EQ(editor->now->steps_done, steps - 1);
+  EXPECT_EQ(find(editor->scene(), std::string("late")) != nullptr, true);
+  EXPECT_TRUE(editor->messages.log().back().failed);
+}
+
+TEST_F(EditorContextTest, UndoIsNamedByTheStepItUndid) {
+  Rename edit;
+  edit.node = {id("box")};
+  edit.name = "first";
+  editor->edit(edit);
+  wait();
+  edit.name = "second";
+  editor->edit(edit);
+  editor->undo();
+  wait();
+  EXPECT_NE(editor->status.find("second"), std::string::npos) << editor->status;
+}
+
+TEST_F(EditorContextTest, PickedNodesDoNotSurviveAnotherDocument) {
+  Rename edit;
+  edit.node = {id("ball")};
+  edit.name = "renamed";
+  editor->edit(edit);
+  editor->project.save(home.path() / "p.rebake");
+  wait();
+  editor->active = {id("renamed")};
+  editor->project.open({(home.path() / "p.rebake").string()});
+  wait();
+  EXPECT_TRUE(editor->active.empty());
+}
+
+TEST_F(EditorContextTest, WorkDoneWhileSourcesAreSoughtGoesToTheTrash) {
+  editor->project.begin_journal();
+  const std::filesystem::path project = home.path() / "p.rebake";
+  editor->project.save(project);
+  wait();
+  std::filesystem::rename(home.path() / "ball", home.path() / "moved");
+  editor->project.open({project.string()});
+  wait();
+  ASSERT_TRUE(editor->project.relinking);
+  Rename edit;
+  edit.node = {id("box")};
+  edit.name = "newer";
+  editor->edit(edit);
+  wait();
+  editor->project.relinking->sources.front().now = (home.path() / "moved").string();
+  editor->project.relink(false);
+  wait();
+  std::string kept;
+  for (const auto& entry : std::filesystem::directory_iterator(home.path() / "rebake/trash"))
+    kept += read_file(entry.path());
+  EXPECT_NE(kept.find("newer"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rebake::test

@@ -330,6 +330,18 @@ TEST_F(Meshes, FilesBesideAreHashedAndStayInTheFolder) {
   }
 }
 
+// An image that is not read, such as a normal map, must not hide the files that are.
+TEST_F(Meshes, GltfWithAnUnreadImageElsewhereStillNamesItsFiles) {
+  nlohmann::json root = square_gltf();
+  root["images"].push_back({{"uri", "../shared/normal.png"}});
+  write_text(path("stray.gltf"), root.dump());
+  const std::vector<fs::path> files = scene_files(path("stray.gltf"));
+  EXPECT_NE(std::find(files.begin(), files.end(), "image.png"), files.end());
+  SourceGuard guard;
+  protect_input(guard, path("stray.gltf"));
+  EXPECT_THROW(guard.check_file(path("image.png")), FileError);
+}
+
 TEST_F(Meshes, SharedImagesAreOneTexture) {
   nlohmann::json root = square_gltf();
   for (int k = 1; k < 20; ++k) {

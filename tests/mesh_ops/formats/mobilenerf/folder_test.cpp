@@ -239,6 +239,21 @@ TEST(Folder, ObjectsWithChildrenAreReadAsGroupsInTheSamePlaces) {
   EXPECT_EQ(upper.motion->bends.size(), 1U);
 }
 
+TEST(Folder, NamesThatDifferInCapitalsGetDifferentFolders) {
+  EXPECT_EQ(folder_name("ball", {"Ball"}), "ball_2");
+  EXPECT_EQ(folder_name("other", {"Ball"}), "other");
+}
+
+TEST(Folder, AForeignFileInAnObjectFolderIsKept) {
+  const TemporaryFolder temporary;
+  const Scene scene = scene_of(made_object(), "ball");
+  format_named("rebake").write(scene, temporary.path() / "s", {}, {});
+  format_named("rebake").write(scene, temporary.path() / "s", {}, {});
+  write_text(temporary.path() / "s/ball/scene.json", "mine");
+  EXPECT_THROW(format_named("rebake").write(scene, temporary.path() / "s", {}, {}), FileError);
+  EXPECT_EQ(read_file(temporary.path() / "s/ball/scene.json"), "mine");
+}
+
 TEST(Folder, ExportsSayWhatTheyLeaveOut) {
   const TemporaryFolder temporary;
   Scene scene = scene_of(made_object(), "ball");
