@@ -66,6 +66,30 @@ class NodeTest(WindowCase):
         editor.key("l")
         self.assertEqual(editor.state()["tool"], "Lasso")
 
+    def test_numbers_that_are_dragged_end_with_their_step_or_node(self):
+        editor = self.open_ficus()
+        editor.key("1")
+        for _ in range(2):
+            x, y = editor.where("gizmo/x")
+            editor.drag([(x, y), (x + 60, y + 5)])
+        editor.until_ops("import", "transform", "transform")
+        # The step under drag is undone: its values must not go to the step before.
+        x, y = editor.where("adjust/translate/Y")
+        editor.drag([(x, y), (x + 40, y)], meanwhile=lambda: editor.key("ctrl+z"))
+        editor.until_ops("import", "transform", "transform", "undo")
+        self.assertEqual(editor.state()["steps"], 2)
+        editor.key("ctrl+shift+z")
+        editor.until_ops("import", "transform", "transform", "undo", "redo")
+        # The node under drag disappears: the next one must not take its number.
+        editor.key("ctrl+d")
+        self.assertEqual(editor.state()["picked"], ["ficus.2"])
+        x, y = editor.where("properties/Position/X")
+        editor.drag([(x, y), (x + 40, y)], meanwhile=lambda: editor.key("ctrl+z"))
+        steps = editor.state()["steps"]
+        editor.click("outline/ficus/name")
+        self.assertEqual(editor.state()["steps"], steps)
+        self.assertEqual(editor.ops()[-1], "undo")
+
     def test_keys_of_blender_begin_a_drag(self):
         self.screen.settings(blender_keys=True)
         editor = self.open_ficus()

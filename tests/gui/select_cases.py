@@ -179,6 +179,35 @@ class SelectTest(WindowCase):
         editor.click(*editor.in_viewport(0.45, 0.5), held="shift")
         self.assertEqual((editor.state()["selected"], editor.last_edit()["node"]), (both, node))
 
+    def test_flood_with_both_keys_leaves_nothing_elsewhere(self):
+        editor = self.open(FICUS, KETTLE)
+        editor.until_ops("import", "import")
+        editor.key("Escape", "Escape", "ctrl+a", "o")
+        # xdotool's helper holds one key, so Control is held around the click.
+        editor.counted("keys", 1, lambda: editor.tool("keydown", "ctrl"))
+        editor.click(*editor.in_viewport(0.45, 0.5), held="shift")
+        editor.counted("keys", 1, lambda: editor.tool("keyup", "ctrl"))
+        editor.settle()
+        taken, words = editor.state()["selected"], editor.state()["selected_words"]
+        self.assertEqual(editor.last_edit()["mode"], "intersect")
+        self.assertEqual(words, f"{taken} selected")
+        editor.key("Delete")
+        self.assertNotIn(" and ", editor.state()["status"], "one node")
+
+    def test_the_count_of_a_form_survives_the_preview_of_a_drag(self):
+        editor = self.open_ficus()
+        editor.key("1")
+        editor.command("select floaters")
+        counts = lambda: [item for item in editor.state()["items"] if item.startswith("form/count: Would")]
+        until(counts, "a count")
+        before = counts()
+        x, y = editor.where("properties/Position/X")
+        editor.drag([(x, y), (x + 40, y)], meanwhile=lambda: editor.key("Escape"))
+        until(lambda: counts() == before, "the count again")
+        editor.click("form/Preview")
+        editor.click("form/Preview")
+        until(lambda: counts() == before, "the count after the preview was off")
+
     def test_a_box_and_a_ball_select_what_they_hold(self):
         editor = self.open_ficus()
         editor.key("u")

@@ -184,10 +184,9 @@ class EditorWindow {
     longest_pause_ms_ = 0;
     const bool plain = !press.control && !press.alt;
     if (press.key == GLFW_KEY_ESCAPE) {
-      const bool in_panel =
-          !editor_.dialogs.palette && !editor_.dialogs.keys && editor_.dialogs.form.empty() && !asks();
-      // A number field or text box handles Escape itself.
-      if (in_panel && (ui::cancel_drag() || ui::takes_text())) return;
+      const bool in_panel = !editor_.dialogs.palette && !editor_.dialogs.keys && !asks();
+      // A number field or text box handles Escape itself; a text box of a form closes with it.
+      if (in_panel && (ui::cancel_drag() || (editor_.dialogs.form.empty() && ui::takes_text()))) return;
       escape();
       return;
     }
@@ -231,6 +230,8 @@ class EditorWindow {
     } else if (editor_.jobs.film) {
       editor_.messages.say(editor_.jobs.film->stopped());
       editor_.jobs.film.reset();
+    } else if (viewport().tool(editor_).busy() && viewport().cancel(editor_)) {
+      return;
     } else if (!editor_.dialogs.form.empty()) {
       editor_.dialogs.form.clear();
     } else if (editor_.dialogs.training) {
