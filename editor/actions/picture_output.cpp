@@ -22,6 +22,7 @@ void refuse_replacing_unnamed(const std::filesystem::path& file, const std::file
   if (file == out || !std::filesystem::exists(std::filesystem::symlink_status(file, error))) return;
   if (std::filesystem::is_symlink(file, error) || !is_rendered_picture(file))
     throw FileError(file, "exists and was not made by Rebake, or is a link; choose another name");
+  refuse_replacing_captured(file);
 }
 
 void check(const PictureContent& content, const std::filesystem::path& out, int width, int height) {

@@ -31,17 +31,27 @@ bool is_page(const fs::path& file) {
   return fs::is_regular_file(file, error) && read_file(file).find(page_mark) != std::string::npos;
 }
 
+// Whether a file of a page's folder is part of this page: it has the name of such a file, and the page refers to it.
+bool is_of_page(const fs::path& folder, const fs::path& inside) {
+  if (!is_page_file(inside)) return false;
+  std::error_code error;
+  const auto refers = [&](const char* from, const std::string& to) {
+    return fs::is_regular_file(folder / from, error) && read_file(folder / from).find(to) != std::string::npos;
+  };
+  const std::string name = inside.generic_string();
+  if (name == "poster.png") return refers("index.html", "\"poster.png\"");
+  if (name == "before.json") return refers("before.json", "\"data/");
+  return !name.starts_with("data/") || refers("scene.json", name) || refers("before.json", name);
+}
+
 // Only an earlier page, or an empty folder, is replaced.
 void refuse_other_folder(const fs::path& folder) {
   if (fs::is_empty(folder)) return;
   if (!is_page(folder / "index.html"))
     throw FileError(folder, "exists and is not a published page; choose a new or empty folder");
-  // Files that some pages have are the page's own only if this one refers to them.
-  const bool has_poster = read_file(folder / "index.html").find("\"poster.png\"") != std::string::npos;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const fs::path inside = entry.path().lexically_relative(folder);
-    const bool is_own = entry.is_directory() ? inside == "data" || inside == "viewer"
-                                             : is_page_file(inside) && (inside != "poster.png" || has_poster);
+    const bool is_own = entry.is_directory() ? inside == "data" || inside == "viewer" : is_of_page(folder, inside);
     if (!is_own || entry.is_symlink())
       throw FileError(
           folder,
@@ -143,6 +153,9 @@ void run(Session& session, const PublishAction& action) {
                             static_cast<double>(bytes_of(page)) / 1e6));
     if (!action.single_file) session.say(fmt::format("to preview it: python3 -m http.server -d '{}'", action.out));
     for (const std::string& decision : page.decisions) session.report(decision);
+    for (const PlacedNode& placed : placed_nodes(scene))
+      if (placed.node->object && !placed.visible)
+        session.say(fmt::format("note: the hidden node \"{}\" is not published", placed.node->name));
   };
   if (action.single_file) {
     write([&](const WebPage& page) { write_file_atomically(action.out, page.files.at("index.html"), sources); });

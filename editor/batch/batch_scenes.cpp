@@ -122,6 +122,9 @@ namespace {
 
 // Refuses to replace scenes that no batch wrote, and what links refer to.
 void check_results(const BatchOptions& options, const ScenesByName& scenes) {
+  if (std::error_code error; fs::is_symlink(state_folder(options), error))
+    throw FieldError("--out",
+                     fmt::format("{} is a link; remove it, or choose another folder", state_folder(options).string()));
   for (const auto& [name, folder] : scenes) {
     const fs::path result = options.out / name;
     std::error_code error;

@@ -97,24 +97,6 @@ void check_journal(const std::filesystem::path& journal, const std::string& scen
   guard.check_file(journal);
 }
 
-// Protects existing inputs from outputs of earlier lines: files, and the files in scene folders. A scene folder may be
-// replaced as a whole before it is imported, because a script may import its own export and may run again. It may not
-// if the import expects a content hash.
-void protect_input_files(Document& document, const std::string& script,
-                         const std::map<std::string, std::string>& variables) {
-  for (const ScriptInput& input : script_inputs(script, variables)) {
-    std::error_code error;
-    // A file that the script writes itself and then reads; a second run finds that of the first.
-    if (input.written_before && std::filesystem::is_regular_file(input.path, error)) continue;
-    if (scene_root(input.path) == input.path && std::filesystem::is_regular_file(input.path, error))
-      document.protect_input(input.path, "a file that this script reads");
-    else if (input.content_known)
-      document.protect_input(input.path, "a scene that this script reads");
-    else if (const std::filesystem::path folder = scene_root(input.path); std::filesystem::is_directory(folder, error))
-      document.protect_contents(folder, "a scene that this script reads");
-  }
-}
-
 // Protects the paths in a list for --protect, except those that this scene's own script reads: protect_input_files()
 // protects them.
 void protect_listed(Document& document, const std::filesystem::path& list, const std::string& scene) {

@@ -490,7 +490,7 @@ class Document:
         mode: how to combine the result with the present selection
         """
     def select_masks(self, *, path: str, format: Literal["auto", "transforms", "colmap", "poses_bounds", "nerfstudio_path", "ngp_path"] = "auto", masks: str = "", world: Literal["y_up", "z_up"] | None = None, scale: float = 1.0, node: Node | None = None, labels: Sequence[int] | None = None, threshold: float = 0.5, store: str = "", mode: Literal["set", "add", "remove", "intersect"] = "set", content: str = "", masks_content: str = "") -> dict[str, NDArray[np.bool_]]:
-        """Selects triangles that are inside masks of photographs: each visible point votes in each photograph.
+        """Selects triangles that are inside masks of photographs: up to four opaque points of each triangle vote in each photograph that sees them.
 
         path: camera file or folder, as for import_views
         format: format of the camera file; auto: recognised

@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "editor/document/document.h"
 #include "editor/document/sources.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
 
@@ -53,6 +55,21 @@ std::vector<ScriptInput> script_inputs(std::string_view script, const std::map<s
     }
   }
   return inputs;
+}
+
+void protect_input_files(Document& document, std::string_view script,
+                         const std::map<std::string, std::string>& variables) {
+  for (const ScriptInput& input : script_inputs(script, variables)) {
+    std::error_code error;
+    // A file that the script writes itself and then reads; a second run finds that of the first.
+    if (input.written_before && !input.content_known && std::filesystem::is_regular_file(input.path, error)) continue;
+    if (scene_root(input.path) == input.path && std::filesystem::is_regular_file(input.path, error))
+      document.protect_input(input.path, "a file that this script reads");
+    else if (input.content_known)
+      document.protect_input(input.path, "a scene that this script reads");
+    else if (const std::filesystem::path folder = scene_root(input.path); std::filesystem::is_directory(folder, error))
+      document.protect_contents(folder, "a scene that this script reads");
+  }
 }
 
 }  // namespace rebake

@@ -210,16 +210,26 @@ std::filesystem::path own_folder(const StudyInput& input, const std::string& stu
 
 namespace {
 
-constexpr const char* endings_of_plots[] = {".svg", ".png", "-2.svg", "-2.png"};
+constexpr const char* files_of_study[] = {".csv", ".svg", ".png", "-2.svg", "-2.png"};
 
-// Content hashes of the plots that an earlier run wrote, by file name.
-nlohmann::json written_plots(const std::string& base) {
+// Content hashes of the files that an earlier run wrote or was about to write, by file name.
+std::map<std::string, std::vector<std::string>> written_files(const std::string& base) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(base + ".json", error)) return nlohmann::json::object();
+  if (!std::filesystem::is_regular_file(base + ".json", error)) return {};
   const nlohmann::json record = nlohmann::json::parse(read_file(base + ".json"), nullptr, false);
-  if (!record.is_object() || record.value("software", nlohmann::json()) != "Rebake" || !record.contains("plots"))
+  const auto refuse = [&] {
     throw FileError(base + ".json", "is not the record of an earlier study; choose another folder");
-  return record.at("plots");
+  };
+  if (!record.is_object() || record.value("software", nlohmann::json()) != "Rebake" || !record.contains("plots"))
+    refuse();
+  std::map<std::string, std::vector<std::string>> files;
+  try {
+    for (const auto& [name, hashes] : record.at("plots").items())
+      files[name] = hashes.is_string() ? std::vector<std::string>{hashes} : hashes.get<std::vector<std::string>>();
+  } catch (const nlohmann::json::exception&) {
+    refuse();
+  }
+  return files;
 }
 
 std::string hash_at(const std::filesystem::path& file) { return hash_text(content_hash(read_file(file))); }
@@ -238,20 +248,19 @@ void prepare_study_folder(const Study& study, const std::filesystem::path& folde
     if (std::filesystem::is_symlink(base + ending, error))
       throw FileError(base + ending, "is a symbolic link; remove it, since the study would overwrite its target");
   }
-  const bool has_table = std::filesystem::exists(base + ".csv", error);
-  if (has_table && !read_file(base + ".csv").starts_with("choice,"))
-    throw FileError(base + ".csv", "is not a table of an earlier study; choose another folder");
-  const nlohmann::json known = written_plots(base);
-  // Earlier versions wrote no record.
-  if (has_table && !std::filesystem::exists(base + ".json", error)) return;
-  for (const char* ending : endings_of_plots)
-    if (const std::filesystem::path plot = base + ending; std::filesystem::exists(plot, error)) {
-      const auto hash = known.find(plot.filename().string());
-      if (hash == known.end() || *hash != hash_at(plot))
-        throw FileError(plot,
-                        "was not written by an earlier study, or was changed since; move it, or choose another "
-                        "folder");
-    }
+  const auto known = written_files(base);
+  // Records of earlier versions do not contain the table.
+  const bool old_record = !known.empty() && !known.contains(study.name + std::string(".csv"));
+  for (const char* ending : files_of_study) {
+    const std::filesystem::path file = base + ending;
+    if (!std::filesystem::exists(file, error)) continue;
+    if (ending == files_of_study[0] && old_record && read_file(file).starts_with("choice,")) continue;
+    const auto hashes = known.find(file.filename().string());
+    if (hashes == known.end() ||
+        std::find(hashes->second.begin(), hashes->second.end(), hash_at(file)) == hashes->second.end())
+      throw FileError(file,
+                      "was not written by an earlier study, or was changed since; move it, or choose another folder");
+  }
 }
 
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
@@ -266,22 +275,29 @@ void write_study(const Study& study, const StudyTable& table, const std::filesys
     csv += '\n';
   }
   const std::string base = (folder / study.name).string();
-  // The record names each plot before it is written, so that a run that ends between leaves no plot that the next run
-  // refuses, and no other file counts as a plot.
-  nlohmann::json plots = nlohmann::json::object();
+  // The record has the contents before and after until all files are written, so that a run that ends in between leaves
+  // no file that the next run refuses, and no other file counts as the study's.
+  std::map<std::string, std::vector<std::string>> files = written_files(base);
+  if (std::filesystem::exists(base + ".csv")) files[study.name + std::string(".csv")].push_back(hash_at(base + ".csv"));
   const auto record = [&] {
-    write_file_atomically(base + ".json", nlohmann::json{{"software", "Rebake"}, {"plots", plots}}.dump(), guard);
+    write_file_atomically(base + ".json", nlohmann::json{{"software", "Rebake"}, {"plots", files}}.dump(), guard);
   };
-  for (const char* ending : endings_of_plots) std::filesystem::remove(base + ending);
-  record();
-  write_file_atomically(base + ".csv", csv, guard);
+  std::map<std::string, std::vector<std::string>> made;
   const auto write = [&](const std::string& path, const std::string& bytes) {
-    plots[std::filesystem::path(path).filename().string()] = hash_text(content_hash(bytes));
+    const std::string name = std::filesystem::path(path).filename().string(), hash = hash_text(content_hash(bytes));
+    files[name].push_back(hash);
+    made[name] = {hash};
     record();
     write_file_atomically(path, bytes, guard);
   };
+  write(base + ".csv", csv);
   write_plot(study, table, table.x, base, write);
   if (table.second_x) write_plot(study, table, *table.second_x, base + "-2", write);
+  // Plots of an earlier run that has more of them.
+  for (const char* ending : files_of_study)
+    if (!made.contains(study.name + std::string(ending))) std::filesystem::remove(base + ending);
+  files = made;
+  record();
 }
 
 }  // namespace rebake

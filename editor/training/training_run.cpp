@@ -39,7 +39,7 @@ bool is_own(const fs::directory_entry& entry) {
   if (!entry.is_regular_file(error) || entry.file_size(error) == 0) return true;
   if (name == preview_name) return is_rendered_picture(entry.path());
   if (name == table_name) return read_file(entry.path()).starts_with(table_header);
-  return name != checkpoint_name || is_checkpoint(entry.path());
+  return name == checkpoint_name && is_checkpoint(entry.path());
 }
 
 double psnr_of(double mean_squared_error) { return -10 * std::log10(std::max(mean_squared_error, 1e-10)); }

@@ -18,8 +18,8 @@ PatchFeatures harmonic_features(const HolePatch& patch,
                                 const std::vector<std::optional<std::array<double, 8>>>& border);
 
 /// A texture set for patches: each triangle gets a square of texels of its own, with the corners at the centres of
-/// corner texels. `texel`: side of a texel in object units; larger if the texture would be higher than 16384 texels. All
-/// texels are opaque. Appends the number of its patch per triangle to `patch_of`.
+/// corner texels. `texel`: side of a texel in object units; larger if the texture would be higher than 16384 texels.
+/// All texels are opaque. Appends the number of its patch per triangle to `patch_of`.
 TextureSet textured_patches(const std::vector<HolePatch>& patches, const std::vector<PatchFeatures>& features,
                             double texel, AlphaCode code, std::vector<std::size_t>& patch_of);
 

@@ -44,7 +44,8 @@ ExportReport write_rebake(const Scene& scene, const fs::path& folder, const Expo
   ExportReport report;
   AtomicFolder out(folder, options.sources, refuse_foreign_content);
   report.notes = save_scene_folder(scene, out, progress);
-  report.preserves_scene = report.notes.empty();
+  // Pictures do not need the unedited shapes.
+  report.preserves_scene = report.notes.size() == unsaved_shapes(scene).size();
   out.commit();
   return report;
 }

@@ -208,6 +208,16 @@ Vec3 in_region(const Vec3& vertex, const Box& box, bool shares) {
   return p;
 }
 
+// Rounding errors of shares of a lattice's layers, so that boxes contain the layers on their sides wherever it lies.
+Vec3 rounding_of_shares(const Box& box) {
+  Vec3 room = Vec3::Zero();
+  for (int axis = 0; axis < 3; ++axis)
+    if (const double size = box.sizes()[axis]; size > 0)
+      room[axis] = 8 * std::numeric_limits<double>::epsilon() *
+                   (1 + std::max(std::abs(box.min()[axis]), std::abs(box.max()[axis])) / size);
+  return room;
+}
+
 double distance_between(const Vec3& a, const Vec3& b, const Box& box, bool shares) {
   const Vec3 way = a - b;
   return (shares ? Vec3(way.cwiseProduct(box.sizes())) : way).stableNorm();
@@ -235,7 +245,8 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
     for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
       const Vec3 p = in_region(cage.vertices[v], box, shares);
       if (move.box) {
-        if ((p.array() >= move.box->min.array()).all() && (p.array() <= move.box->max.array()).all())
+        const Vec3 room = shares ? rounding_of_shares(box) : Vec3(Vec3::Zero());
+        if ((p.array() >= (move.box->min - room).array()).all() && (p.array() <= (move.box->max + room).array()).all())
           result.push_back(v);
         continue;
       }

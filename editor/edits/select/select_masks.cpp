@@ -191,7 +191,9 @@ Outcome apply(const Scene& scene, const SelectMasks& edit, const Progress& progr
 }
 
 REBAKE_DESCRIBE_EDIT(
-    SelectMasks, "Selects triangles that are inside masks of photographs: each visible point votes in each photograph.",
+    SelectMasks,
+    "Selects triangles that are inside masks of photographs: up to four opaque points of each triangle vote in each "
+    "photograph that sees them.",
     (auto& edit, auto& visit) {
       visit("path", edit.path, Need::required, "camera file or folder, as for import_views");
       visit("format", edit.format, Need::optional, "format of the camera file; auto: recognised");

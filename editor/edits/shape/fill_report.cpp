@@ -26,8 +26,8 @@ void set_filled(Node& node, const FilledHoles& filled) {
     // A patch amid selected triangles belongs to them: keyframed bends move it with them.
     std::vector<std::uint8_t> inside;
     for (const std::vector<std::uint32_t>& around : filled.around)
-      inside.push_back(std::all_of(around.begin(), around.end(), [&](std::uint32_t f) { return (*saved)[f] != 0; }) ? 1
-                                                                                                                     : 0);
+      inside.push_back(
+          std::all_of(around.begin(), around.end(), [&](std::uint32_t f) { return (*saved)[f] != 0; }) ? 1 : 0);
     TriangleSet longer = *saved;
     for (const std::size_t hole : filled.hole_of) longer.push_back(inside[hole]);
     saved = std::make_shared<const TriangleSet>(std::move(longer));

@@ -186,7 +186,8 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
                   static_cast<double>(texel_area(before)) / 1e6, static_cast<double>(texel_area(*made)) / 1e6));
   if (removed > 0)
     result.lines.push_back(fmt::format(
-        "{} rays, {} from each removed triangle: at most {:.2g} % of the lines of sight to any of them "
+        "{} rays, {} from each removed triangle with opaque texels: at most {:.2g} % of the lines of sight to any of "
+        "them "
         "are unoccluded (95 % confidence); smallest visible share found {:.2g} %; {} triangles were reached by one ray "
         "only",
         rays, rays_each, 100 * missed_share_bound(removed, rays_each), 100 * opening, once));

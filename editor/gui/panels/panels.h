@@ -47,7 +47,7 @@ class PropertiesPanel {
   void draw_one(DocumentEditor& editor, const PlacedNode& placed);
   void draw_several(DocumentEditor& editor);
   std::set<NodeId> of_;                                        ///< nodes that the numbers belong to
-  Affine from_ = Affine::Identity();  ///< Node::to_parent when a change began
+  Affine from_ = Affine::Identity();                           ///< Node::to_parent when a change began
   Vec3 position_{0, 0, 0}, angles_{0, 0, 0}, scale_{1, 1, 1};  ///< scene units, Euler angles in degrees, factors
   bool dragging_ = false;         ///< a number is being dragged, so the numbers differ from the document
   std::size_t problem_step_ = 0;  ///< number of history steps when `problem_` was set

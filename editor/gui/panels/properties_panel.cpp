@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <set>
+
 #include <cmath>
 
 #include "editor/edits/nodes/transform.h"
@@ -28,9 +30,13 @@ std::string rows_of(const DocumentEditor& editor) {
   std::size_t triangles = 0, sets = 0;
   std::uint64_t bytes = 0;
   bool bent = false;
-  for (const NodeId id : editor.active) {
-    const NodePtr one = find(editor.scene(), id);
-    if (!one || !one->object) continue;
+  // Of the picked nodes and those inside them, each once.
+  std::set<NodeId> inside(editor.active.begin(), editor.active.end());
+  for (const PlacedNode& placed : placed_nodes(editor.scene())) {
+    const NodePtr& one = placed.node;
+    if (!inside.contains(one->id)) continue;
+    for (const NodePtr& child : one->children) inside.insert(child->id);
+    if (!one->object) continue;
     triangles += one->object->triangle_count();
     sets += one->object->sets.size();
     bytes += one->object->memory();

@@ -64,7 +64,8 @@ bool DocumentEditor::take_news() {
   const std::shared_ptr<const Snapshot> next = jobs.worker.snapshot();
   if (next == now) return false;
   const bool other = next->scene.roots != scene().roots, other_document = next->document != now->document;
-  const bool made_more = !other_document && next->done.size() > now->done.size() && next->done.back().type().makes_nodes && next->before_last;
+  const bool made_more = !other_document && next->done.size() > now->done.size() &&
+                         next->done.back().type().makes_nodes && next->before_last;
   // The status bar shows the title of the last step when it is another one.
   const void* const last_before = now->done.empty() ? nullptr : now->done.back().value();
   if (const void* const last = next->done.empty() ? nullptr : next->done.back().value(); last != last_before)
@@ -243,18 +244,20 @@ namespace {
 // Steps that a job undid or redid.
 struct StepsMade {
   int count = 0;
-  const void* edit = nullptr;  // of the last one
+  const void* edit = nullptr;  // the first or last one of the last step
 };
 
 void undo_step_in(Session& session, StepsMade& made) {
   if (!session.document.undo_step(session.progress)) return;
+  const History& history = session.document.history();
   ++made.count;
-  made.edit = session.document.history().undone().front().value();
+  made.edit = history.entries()[history.undo_count()].edit.value();
 }
 void redo_step_in(Session& session, StepsMade& made) {
   if (!session.document.redo_step(session.progress)) return;
+  const History& history = session.document.history();
   ++made.count;
-  made.edit = session.document.history().edits().back().value();
+  made.edit = history.entries()[history.undo_count() - 1].edit.value();
 }
 
 }  // namespace
@@ -291,27 +294,29 @@ void DocumentEditor::redo(int steps) {
 }
 
 void DocumentEditor::go_to(std::size_t steps) {
-  std::vector<Edit> all = now->done;
-  all.insert(all.end(), now->undone.begin(), now->undone.end());
-  std::size_t edits = 0;
-  for (std::size_t k = 0; k < steps; ++k) edits += now->steps[k].edits;
-  all.erase(all.begin() + static_cast<std::ptrdiff_t>(edits), all.end());
+  std::vector<Edit> last;  // of each step to be done
+  std::vector<std::size_t> edits{0};
+  for (std::size_t k = 0; k < std::min(steps, now->steps.size()); ++k) {
+    last.push_back(now->steps[k].last);
+    edits.push_back(edits.back() + now->steps[k].edits);
+  }
   at_rest_ = false;
   const bool undoes = steps < now->steps_done;
   const auto made = std::make_shared<StepsMade>();
   jobs.worker.start(
       undoes ? "undo" : "redo",
-      [all, made](Session& session) {
+      [last, edits, made](Session& session) {
         const History& history = session.document.history();
-        std::vector<Edit> there = history.edits();
-        const std::vector<Edit> undone = history.undone();
-        there.insert(there.end(), undone.begin(), undone.end());
-        const bool same = all.size() <= there.size() &&
-                          std::equal(all.begin(), all.end(), there.begin(),
-                                     [](const Edit& a, const Edit& b) { return a.value() == b.value(); });
-        if (!same) throw EditError("another step was applied in the meantime; nothing was changed, try again");
-        while (history.undo_count() > all.size()) undo_step_in(session, *made);
-        while (history.undo_count() < all.size()) redo_step_in(session, *made);
+        const std::vector<History::Entry> there = history.entries();
+        for (std::size_t k = 0; k < last.size(); ++k)
+          if (edits[k + 1] > there.size() || there[edits[k + 1] - 1].edit.value() != last[k].value())
+            throw EditError("another step was applied in the meantime; nothing was changed, try again");
+        for (int before = -1; history.undo_count() > edits.back() && before != made->count;
+             undo_step_in(session, *made))
+          before = made->count;
+        for (int before = -1; history.undo_count() < edits.back() && before != made->count;
+             redo_step_in(session, *made))
+          before = made->count;
       },
       [this, made, undoes] {
         if (made->count == 0) return;
@@ -337,16 +342,10 @@ std::vector<SelectPicture> DocumentEditor::visible_selections() const {
 }
 
 std::string DocumentEditor::title_of_step(const void* edit) const {
-  std::size_t number = 0;
-  for (const std::vector<Edit>* const list : {&now->done, &now->undone})
-    for (const Edit& one : *list) {
-      ++number;
-      if (one.value() != edit) continue;
-      std::size_t edits = 0;
-      for (const Snapshot::Step& step : now->steps)
-        if ((edits += step.edits) >= number) return step.title;
-    }
-  return "";
+  const auto found = std::find_if(now->steps.begin(), now->steps.end(), [&](const Snapshot::Step& step) {
+    return step.first.value() == edit || step.last.value() == edit;
+  });
+  return found == now->steps.end() ? "" : found->title;
 }
 
 std::vector<NodeId> DocumentEditor::active_tops() const {

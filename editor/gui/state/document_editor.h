@@ -157,7 +157,7 @@ struct DocumentEditor {
   std::optional<PreviewRequest> matching_preview(const std::vector<Edit>& list) const;
   /// Picks the nodes that are not in `before`.
   void pick_new(const std::vector<PlacedNode>& before);
-  /// Title of the step with an edit; empty if there is none.
+  /// Title of the step whose first or last edit this is; empty if there is none.
   std::string title_of_step(const void* edit) const;
   std::optional<PreviewRequest> asked_;  ///< the last requested preview
   bool in_scope(const PlacedNode& placed) const { return in_scope(scene(), placed); }

@@ -15,6 +15,7 @@
 #include "editor/document/replaced_work.h"
 #include "editor/gui/platform/default_program.h"
 #include "editor/script/script.h"
+#include "editor/script/script_inputs.h"
 #include "mesh_ops/base/files.h"
 
 namespace rebake {
@@ -129,7 +130,8 @@ void Project::open_project(const fs::path& file, const SourceLinks& links, bool 
           Document opened = Document::open(file, links, session.progress);
           const std::string missing = try_keep_journal(opened);
           // A job that ran when the user asked may have changed the document since.
-          if (const std::string said = replace_document(session, std::move(opened), keeps || !same_work(session.scene(), asked));
+          if (const std::string said =
+                  replace_document(session, std::move(opened), keeps || !same_work(session.scene(), asked));
               !said.empty())
             session.say(said);
           if (!missing.empty()) session.say(missing);
@@ -274,14 +276,30 @@ void Project::save_script(const fs::path& file) {
   worker_.start("save script", [file](Session& session) {
     refuse_replacing_other_than_script(file);
     std::string text;
-    for (const Edit& one : session.document.history().edits()) text += to_json(one).dump() + "\n";
+    bool braces = false;
+    for (const Edit& one : session.document.history().edits()) {
+      const nlohmann::json line = to_json(one);
+      text += line.dump() + "\n";
+      try {
+        braces = braces || with_variables(line, {}) != line;
+      } catch (const Error&) {
+        braces = true;
+      }
+    }
     write_file_atomically(file, text, session.document.sources());
     session.say("Wrote " + file.string());
+    if (braces)
+      session.say("Names or paths in the script have braces, which scripts take for variables; rename them first.");
   });
 }
 
 void Project::run_script(const fs::path& file) {
-  worker_.start("script", [file](Session& session) { rebake::run_script(session, read_input(file), file, {}); });
+  worker_.start("script", [file](Session& session) {
+    const std::string script = read_input(file);
+    session.document.protect_file(file, "the script of this run");
+    protect_input_files(session.document, script, {});
+    rebake::run_script(session, script, file, {});
+  });
 }
 
 bool Project::unsaved() const { return !same_work(now_->scene, saved_ ? *saved_ : imported); }

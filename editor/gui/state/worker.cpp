@@ -147,7 +147,7 @@ void Worker::name_steps(Snapshot& next) {
     else
       title = title_of(group.edits, next.scene);
     titles.insert_or_assign(key, Titled{group.edits.front(), group.edits.size(), title});
-    next.steps.push_back({title, group.edits.size()});
+    next.steps.push_back({title, group.edits.size(), group.edits.front(), group.edits.back()});
   }
   titles_ = std::move(titles);
 }

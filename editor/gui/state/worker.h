@@ -25,6 +25,7 @@ struct Snapshot {
   struct Step {
     std::string title;
     std::size_t edits = 0;  ///< number of edits
+    Edit first, last;       ///< of them
   };
   std::vector<Step> steps;     ///< done steps, oldest first, then undone steps
   std::size_t steps_done = 0;  ///< number of done steps

@@ -46,16 +46,16 @@ class HandlesTool final : public ViewTool {
 
   bool holds_ = true;  ///< a click sets a fixed pin, otherwise one to drag; Shift inverts it
   float coarseness_ = 0.08F;
-  Pins pins_, before_;         ///< current pins, and those at the start of the drag
+  Pins pins_, before_;          ///< current pins, and those at the start of the drag
   std::vector<NodePtr> roots_;  ///< of the scene at the start of the drag
-  std::vector<Pins> steps_;    ///< pins after each release; [0] is empty: no deformation
-  std::size_t at_ = 0;         ///< index into steps_ of the state that the document has
-  std::optional<Scene> from_;  ///< scene in which the pins were set; the edit applies to it
-  DeformTarget target_;        ///< deformed triangles
-  bool hidden_ = false;        ///< pins are hidden: the document has none of their steps; redo may return to one
-  double reach_ = 0;           ///< a pin moves the cage points within this radius, scene units
-  int held_ = -1;              ///< index of the dragged pin; −1: none
-  Vec2 pressed_at_{0, 0};      ///< viewport pixel where the drag began
+  std::vector<Pins> steps_;     ///< pins after each release; [0] is empty: no deformation
+  std::size_t at_ = 0;          ///< index into steps_ of the state that the document has
+  std::optional<Scene> from_;   ///< scene in which the pins were set; the edit applies to it
+  DeformTarget target_;         ///< deformed triangles
+  bool hidden_ = false;         ///< pins are hidden: the document has none of their steps; redo may return to one
+  double reach_ = 0;            ///< a pin moves the cage points within this radius, scene units
+  int held_ = -1;               ///< index of the dragged pin; −1: none
+  Vec2 pressed_at_{0, 0};       ///< viewport pixel where the drag began
 };
 
 }  // namespace rebake

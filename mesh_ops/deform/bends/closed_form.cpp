@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/error.h"
@@ -16,6 +17,12 @@ Mat3 frame_of(const ClosedForm& form) {
   Mat3 frame;
   frame << x.transpose(), z.cross(x).transpose(), z.transpose();
   return frame;
+}
+
+double limit_rounding(const ClosedForm& form, const Vec3& point) {
+  return 16 * std::numeric_limits<double>::epsilon() *
+         (point.cwiseAbs().maxCoeff() + form.origin.cwiseAbs().maxCoeff() +
+          std::max(std::abs(form.from), std::abs(form.to)));
 }
 
 void check(const ClosedForm& form) {
@@ -36,7 +43,9 @@ Deformed deform(const ClosedForm& form, const Vec3& point) {
   const Vec3 p = frame * (point - form.origin);
   const double length = form.to - form.from;
   const double inside = std::clamp(p.z(), form.from, form.to);
-  const double slope = p.z() > form.from && p.z() < form.to ? 1 : 0;  // derivative of `inside` by z
+  const double rounding = limit_rounding(form, point);
+  // Derivative of `inside` by z.
+  const double slope = p.z() >= form.from - rounding && p.z() <= form.to + rounding ? 1 : 0;
   const double share = (inside - form.from) / length, beyond = p.z() - inside;
   // Motion and Jacobian minus identity, so that unmoved points keep their bits and small angles lose no digits:
   // cos a − 1 = −2 sin²(a/2).

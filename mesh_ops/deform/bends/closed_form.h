@@ -33,4 +33,8 @@ Deformed deform(const ClosedForm& form, const Vec3& point);
 /// Rotation into the axes of the form. Rows: towards the direction, across both, along the axis.
 Mat3 frame_of(const ClosedForm& form);
 
+/// Rounding of a point's coordinate along the axis. Vertices at the limits up to this take the Jacobian from inside, as
+/// all triangles are inside by default.
+double limit_rounding(const ClosedForm& form, const Vec3& point);
+
 }  // namespace rebake

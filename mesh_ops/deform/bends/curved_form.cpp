@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mesh_ops/base/elementary.h"
 #include "mesh_ops/base/error.h"
@@ -115,6 +116,17 @@ Deformed deform_after_helix(const CurvedForm::Piece& piece, const Position& at, 
   return {so_far.point + motion, jacobian};
 }
 
+// The segments on which a point is projected: those around the nearest one, up to the first that points back. Beyond
+// it, a parallel one is another part of a spine that winds.
+std::pair<std::size_t, std::size_t> projected_segments(const CurvedForm& form, std::size_t nearest,
+                                                       std::size_t segments) {
+  if (form.opposed.empty()) return {0, segments};
+  std::size_t first = nearest, last = nearest;
+  while (first > 0 && !form.opposed[nearest * segments + first - 1]) --first;
+  while (last + 1 < segments && !form.opposed[nearest * segments + last + 1]) ++last;
+  return {first, last};
+}
+
 }  // namespace
 
 CurvedForm along_curve(const ClosedForm& form, const std::vector<Vec3>& spine) {
@@ -153,16 +165,20 @@ Deformed deform(const CurvedForm& form, const Vec3& point) {
     return deform(form.pieces.front().form, point);
   const std::size_t segments = form.spine.size() - 1;
   const std::size_t nearest = form.opposed.empty() ? 0 : nearest_segment(form.spine, point);
+  const auto [first, last] = projected_segments(form, nearest, segments);
   Deformed result{point, Mat3::Identity()};
   for (const CurvedForm::Piece& piece : form.pieces) {
     const ClosedForm& one = piece.form;
     Position at;
-    if (!form.opposed.empty() && form.opposed[nearest * segments + piece.segment]) {
+    if (piece.segment < first || piece.segment > last) {
       at.inside = piece.segment < nearest ? one.to : one.from;
     } else {
       const double along = one.axis.stableNormalized().dot(point - one.origin);
       at.inside = std::clamp(along, one.from, one.to);
-      at.within = along > one.from && along < one.to;
+      // At a joint of two segments the later one counts.
+      const double rounding = limit_rounding(one, point);
+      const bool ends = &piece == &form.pieces.front();
+      at.within = along >= one.from - rounding && along <= one.to + (ends ? rounding : -rounding);
     }
     result = piece.turn.isZero(0) ? deform_after(one, at, result) : deform_after_helix(piece, at, result);
   }

@@ -30,8 +30,8 @@ CurvedForm along_curve(const ClosedForm& form, const std::vector<Vec3>& spine);
 
 /// The position along a segment is that of the undeformed point, projected. Segments that point back, by more than 90°
 /// from the segment nearest to the point, would get wrong projections: they count as entirely before or behind the
-/// point, by their order. The result is continuous within the spine's radius of curvature; at a corner of more than 90°
-/// it is not.
+/// point, by their order; so do segments beyond them. The result is continuous within the spine's radius of curvature;
+/// at a corner of more than 90° it is not.
 Deformed deform(const CurvedForm& form, const Vec3& point);
 
 }  // namespace rebake

@@ -76,7 +76,9 @@ std::vector<fs::path> named_files(const fs::path& camera_file, const std::vector
   const fs::path folder = capture_folder(camera_file);
   std::vector<fs::path> files;
   for (const PhotoCamera& camera : cameras)
-    if (fs::path file = photograph_at(folder, camera.name); !file.empty()) files.push_back(std::move(file));
+    // Also where they are not read from, outside of the capture, and in the folder of COLMAP.
+    for (const fs::path& place : {folder, folder / "images"})
+      if (fs::path file = existing(place, camera.name); !file.empty()) files.push_back(std::move(file));
   for (const PhotoCamera& camera : cameras)
     if (std::error_code error; !camera.mask.empty() && fs::is_regular_file(folder / camera.mask, error))
       files.push_back(folder / camera.mask);

@@ -260,8 +260,7 @@ std::vector<fs::path> GltfDocument::files() const {
   for (const char* list : {"buffers", "images"})
     for (const json& one : elements(list))
       if (one.is_object() && one.contains("uri") && one.at("uri").is_string())
-        if (const auto uri = one.at("uri").get<std::string>(); !uri.starts_with("data:"))
-          try {
+        if (const auto uri = one.at("uri").get<std::string>(); !uri.starts_with("data:")) try {
             found.push_back(path_beside(file_.parent_path(), unescaped(uri), file_));
           } catch (const FileError&) {
             // Reading refuses it if it is used; one that is not must not hide the others.

@@ -411,6 +411,18 @@ Scene read_scene_folder(const fs::path& folder, const Progress& progress) {
   return SceneReader(folder, progress).run();
 }
 
+std::vector<std::string> unsaved_shapes(const Scene& scene) {
+  std::vector<std::string> notes;
+  if (!scene.light)
+    for (const PlacedNode& placed : placed_nodes(scene))
+      if (placed.node->object && !placed.node->object->bodies.empty())
+        notes.push_back(fmt::format(
+            "the unedited shape of \"{}\" is not saved, because light does not follow edits: set it (light) before "
+            "saving if it is to follow them later; a project keeps the shape",
+            placed.node->name));
+  return notes;
+}
+
 std::vector<std::string> unsaved_parts(const Scene& scene) {
   std::vector<std::string> notes;
   for (const PlacedNode& placed : placed_nodes(scene))
@@ -430,6 +442,7 @@ std::vector<std::string> unsaved_parts(const Scene& scene) {
 
 std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out, const Progress& progress) {
   std::vector<std::string> notes = unsaved_parts(scene), taken;
+  for (std::string& note : unsaved_shapes(scene)) notes.push_back(std::move(note));
   std::map<const BakedObject*, std::string> folder_of;
   std::vector<std::shared_ptr<const BakedObject>> written;
   // Bodies are of use only if light follows edits.

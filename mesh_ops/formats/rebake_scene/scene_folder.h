@@ -26,6 +26,9 @@ std::vector<std::string> save_scene_folder(const Scene& scene, AtomicFolder& out
 /// Sentences about parts of a scene that scene.json cannot hold: stored selections, and keyframes that need them.
 std::vector<std::string> unsaved_parts(const Scene& scene);
 
+/// Sentences about the unedited shapes of edited objects, which are not saved while light does not follow edits.
+std::vector<std::string> unsaved_shapes(const Scene& scene);
+
 /// The text of scene.json. `folder_of`: folder name per object, and with `with_bodies` also per body.
 std::string write_scene_json(const Scene& scene, const std::map<const BakedObject*, std::string>& folder_of,
                              bool with_bodies = false);

@@ -520,5 +520,32 @@ TEST_F(Guards, RejectsOutputsOverInputs) {
   EXPECT_EQ(read_file(path("cage.obj")), mesh);
 }
 
+// A file that a later line expects with a known content is not that of an earlier line.
+TEST_F(Guards, FilesOfKnownContentAreNotReplacedBeforeTheyAreRead) {
+  write("views.json", R"({"camera_angle_x": 0.7, "frames": [{"file_path": "v.png",
+            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}], "software": "Rebake"})");
+  const std::string before = read_file(path("views.json"));
+  write("s.jsonl",
+        import_line() + R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}})" + "\n" +
+            fmt::format("{{\"op\": \"export_views\", \"out\": \"{0}\"}}\n"
+                        "{{\"op\": \"import_views\", \"path\": \"{0}\", \"content\": \"0123456789abcdef\"}}\n",
+                        path("views.json").string()));
+  EXPECT_EQ(program("run {}/s.jsonl"), 1);
+  EXPECT_EQ(read_file(path("views.json")), before);
+}
+
+TEST_F(Guards, RenderedPhotographsOfColmapAreNotReplaced) {
+  fs::create_directories(path("c/images"));
+  fs::create_directories(path("c/sparse/0"));
+  const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";
+  ASSERT_EQ(program("render " + kettle + " -o {}/c/images/0.png --size 16x16"), 0) << log();
+  write("c/sparse/0/cameras.txt", "1 PINHOLE 16 16 20 20 8 8\n");
+  write("c/sparse/0/images.txt", "1 1 0 0 0 0 0 4 1 0.png\n\n");
+  write("c/sparse/0/points3D.txt", "");
+  const std::string before = read_file(path("c/images/0.png"));
+  EXPECT_EQ(program("render " + kettle + " --cameras {}/c/sparse/0 -o {}/c/images"), 1) << log();
+  EXPECT_EQ(read_file(path("c/images/0.png")), before);
+}
+
 }  // namespace
 }  // namespace rebake::test

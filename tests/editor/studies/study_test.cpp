@@ -41,6 +41,31 @@ TEST_F(StudyFiles, AreReplacedByALaterRun) {
   EXPECT_EQ(read_file(at("textures.png")), "plot\n");
 }
 
+TEST_F(StudyFiles, AnEditedTableOrOneOfOthersIsKept) {
+  plotter("echo plot");
+  write();
+  const std::string edited = read_file(at("textures.csv")) + "mine,1,2\n";
+  write_text(at("textures.csv"), edited);
+  EXPECT_THROW(write(), FileError);
+  EXPECT_EQ(read_file(at("textures.csv")), edited);
+  std::filesystem::remove_all(folder.path() / "out");
+  std::filesystem::create_directories(folder.path() / "out");
+  write_text(at("textures.csv"), "choice,votes\nred,5\n");
+  EXPECT_THROW(write(), FileError);
+}
+
+// Nothing of the run before is removed until the new files are there.
+TEST_F(StudyFiles, AFailedRunLeavesTheEarlierPlots) {
+  plotter("echo plot");
+  write();
+  plotter("exit 1");
+  EXPECT_THROW(write(), Error);
+  EXPECT_EQ(read_file(at("textures.png")), "plot\n");
+  plotter("echo again");
+  write();
+  EXPECT_EQ(read_file(at("textures.png")), "again\n");
+}
+
 // Without gnuplot there is a table and no plot; one of the user's must not count as the study's.
 TEST_F(StudyFiles, PlotsOfOthersAreKeptAfterARunWithoutPlots) {
   plotter("exit 1");

@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include <atomic>
+#include <numbers>
 
 #include "editor/actions/session.h"
 #include "editor/edits/deform/deforming.h"
 #include "editor/script/script.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/deform/bends/closed_form.h"
 #include "mesh_ops/deform/cage_coordinates/coordinates.h"
 #include "mesh_ops/deform/cages/cage_mesh.h"
 #include "mesh_ops/formats/export.h"
@@ -383,6 +385,47 @@ TEST_F(DeformScript, OverlappingHandlesDoNotAddTheirMotions) {
   };
   EXPECT_NEAR(highest(0.1), 2, 0.1);
   EXPECT_NEAR(highest(0.5), 2, 0.15);
+}
+
+// Boxes contain their sides: rounding of a lattice's layers must not decide which of them move.
+TEST_F(DeformScript, BoxesInBoundsContainTheLayersOnTheirSidesEverywhere) {
+  for (const int cells : {2, 4, 5, 8, 10})
+    for (int k = 0; k < 40; ++k) {
+      const Vec3 low(0.1 * k, -0.37 * k, 7.7 / (k + 1)), size(1.0 / (k + 3), 0.3 + 0.1 * k, 2.1);
+      const Cage cage = lattice_cage(Box(low, Vec3(low + size)), cells, cells, cells);
+      CageMove move;
+      const double share = 1.0 / cells;
+      move.box = BoxRegion{{0, share, 0}, {1, 1, 1}};
+      const std::size_t all = cage.vertices.size(), taken = points_of(move, cage, true).size(),
+                        layer = static_cast<std::size_t>((cells + 1) * (cells + 1));
+      ASSERT_EQ(taken, all - layer) << cells << ' ' << k;
+    }
+}
+
+// The vertices at both ends of a part are equivalent under a rotation, so their rotations are, wherever it lies.
+TEST_F(DeformScript, EndsAtTheDefaultLimitsRotateAlike) {
+  for (const char* turn :
+       {R"([1, 2, 3], "degrees": 35)", R"([1, 0, 0], "degrees": 30)", R"([1, 0, 1], "degrees": 50)"}) {
+    ClosedForm form;
+    form.kind = ClosedForm::Kind::twist;
+    form.radians = 2;
+    const nlohmann::json rotation = nlohmann::json::parse(fmt::format(R"({{"axis": {}}})", turn));
+    const Vec3 about(rotation["axis"][0].get<double>(), rotation["axis"][1].get<double>(),
+                     rotation["axis"][2].get<double>());
+    const Mat3 tilt =
+        Eigen::AngleAxisd(rotation["degrees"].get<double>() * std::numbers::pi / 180, about.normalized()).matrix();
+    form.axis = tilt * Vec3::UnitY();
+    form.direction = tilt * Vec3::UnitX();
+    form.from = 0;
+    form.to = 2;
+    const auto stretched = [&](double height, int k) {
+      const double angle = k * std::numbers::pi / 8;
+      const Vec3 point = tilt * Vec3(std::cos(angle) / 2, height, std::sin(angle) / 2);
+      return (deform(form, point).jacobian - Mat3::Identity()).norm();
+    };
+    for (const double height : {0.0, 2.0})
+      for (int k = 1; k < 16; ++k) EXPECT_NEAR(stretched(height, k), stretched(height, 0), 1e-12) << height << ' ' << k;
+  }
 }
 
 }  // namespace

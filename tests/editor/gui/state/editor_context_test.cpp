@@ -481,5 +481,41 @@ TEST_F(EditorContextTest, WorkDoneWhileSourcesAreSoughtGoesToTheTrash) {
   EXPECT_NE(kept.find("newer"), std::string::npos);
 }
 
+// Steps that a later one revised are in the history, too.
+TEST_F(EditorContextTest, ClicksInTheHistoryCountRevisedSteps) {
+  Transform move;
+  move.node = NodeRef{id("box")};
+  move.translate = Vec3(1, 0, 0);
+  editor->edit(move);
+  wait();
+  for (const double x : {2.0, 3.0}) {
+    move.translate = Vec3(x, 0, 0);
+    editor->revise({move});
+    wait();
+  }
+  const std::size_t steps = editor->now->steps_done;
+  const auto at = [&] { return find(editor->scene(), id("box"))->to_parent.translation().x(); };
+  ASSERT_EQ(at(), 3);
+  for (const std::size_t back : {1U, 2U, 0U, 3U}) {
+    editor->go_to(steps - back);
+    wait();
+    EXPECT_EQ(editor->now->steps_done, steps - back);
+    EXPECT_EQ(at(), 3 - static_cast<double>(back));
+  }
+}
+
+TEST_F(EditorContextTest, ScriptsRunInTheWindowKeepWhatTheirLaterLinesRead) {
+  export_scene(scene_of(made_object({.columns = 4, .rows = 2})), home.path() / "later", {});
+  const auto before = folder_bytes(home.path() / "later");
+  write_text(home.path() / "s.jsonl", fmt::format(R"({{"op": "export", "out": "{0}"}}
+{{"op": "import", "path": "{0}", "content": "0000000000000000"}}
+)",
+                                                  (home.path() / "later").string()));
+  editor->project.run_script(home.path() / "s.jsonl");
+  wait();
+  EXPECT_EQ(folder_bytes(home.path() / "later"), before);
+  EXPECT_TRUE(editor->messages.log().back().failed);
+}
+
 }  // namespace
 }  // namespace rebake::test

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <optional>
 #include <random>
 
@@ -178,6 +179,39 @@ TEST(CurvedForm, SpinesThatTurnBackMoveOnlyWhatComesAfter) {
         EXPECT_LE((one.jacobian.transpose() * one.jacobian - Mat3::Identity()).norm(), 1e-13);
       }
     }
+  }
+}
+
+// A spine that winds: parallel legs are different parts of it. What lies beyond the limit moves rigidly.
+TEST(CurvedForm, LegsOfAWindingSpineBeyondTheLimitMoveRigidly) {
+  std::vector<Vec3> spine;
+  const auto arc = [&](const Vec3& centre, double from, double to) {
+    for (int k = 0; k <= 8; ++k) {
+      const double angle = from + (to - from) * k / 8;
+      spine.emplace_back(centre + 0.3 * Vec3(std::cos(angle), std::sin(angle), 0));
+    }
+  };
+  spine.emplace_back(0, 0, 0);
+  arc({2, 0.3, 0}, -std::numbers::pi / 2, std::numbers::pi / 2);
+  arc({0, 0.9, 0}, -std::numbers::pi / 2, -3 * std::numbers::pi / 2);
+  spine.emplace_back(2, 1.2, 0);
+  for (const ClosedForm::Kind kind : {ClosedForm::Kind::bend, ClosedForm::Kind::twist, ClosedForm::Kind::stretch}) {
+    ClosedForm form;
+    form.kind = kind;
+    form.axis = {1, 0, 0};
+    form.direction = {0, 0, 1};
+    form.radians = 1.5;
+    form.factor = 1.4;
+    form.to = 1.5;
+    const CurvedForm curved = along_curve(form, spine);
+    std::vector<Vec3> rest, moved;
+    for (const double x : {0.1, 0.7, 1.3, 1.9})
+      for (const double z : {-0.05, 0.05}) {
+        rest.emplace_back(x, 1.2, z);
+        moved.push_back(deform(curved, rest.back()).point);
+      }
+    for (std::size_t a = 0; a < rest.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b) EXPECT_NEAR((moved[a] - moved[b]).norm(), (rest[a] - rest[b]).norm(), 1e-12);
   }
 }
 
