@@ -21,7 +21,8 @@ namespace {
 
 bool wrote(const std::filesystem::path& path) {
   const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
-  return root.is_object() && root.value("software", nlohmann::json()) == camera_software;
+  return root.is_object() && root.value("software", nlohmann::json()) == camera_software &&
+         (root.contains("frames") || root.contains("camera_path"));
 }
 
 // Cameras in a file are poses that nobody may be able to make again: only files that this action wrote are replaced.
@@ -34,8 +35,12 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
     throw FileError(path, what + ", so it is not replaced; choose another name, or remove it first");
   };
   const CameraFormat* there = camera_format_at(path);
-  if (there == nullptr) refuse("exists and is not a camera file");
   const bool own = std::filesystem::is_regular_file(path, error) && wrote(path);
+  if (there == nullptr) {
+    // Only files that end in .json are recognised.
+    if (!own) refuse("exists and is not a camera file of Rebake");
+    return;
+  }
   if (there->write == nullptr) refuse(fmt::format("has cameras in the format {}, which is not written", there->name));
   std::vector<std::string> notes;
   const std::vector<PhotoCamera> cameras = read_cameras(path, "", {}, notes);

@@ -17,7 +17,6 @@ std::vector<std::filesystem::path> UseLightModelAction::input_files(const nlohma
 }
 
 void run(Session& session, const UseLightModelAction& action) {
-  session.document.protect_file(action.model, "a light model of this run");
   const TransferModel model = read_light_model(action.model);
   const NodePtr node = use_light_model(model, session.scene(), action.model);
   for (const std::string& fact : facts_of(model)) session.say(fact);

@@ -24,8 +24,8 @@ BatchMark mark_from(const std::string& text, const fs::path& out) {
     mark.below_requested_psnr = line.value("below_asked", mark.below_requested_psnr);
     if (line.contains("read")) mark.read.push_back({line.value("read", ""), line.value("content", "")});
     if (line.contains("wrote"))
-      mark.wrote.push_back(
-          {fs::weakly_canonical(fs::absolute(out) / line.value("wrote", "")).string(), line.value("content", "")});
+      mark.wrote.push_back({fs::weakly_canonical(fs::absolute(out) / line.value("wrote", "")).string(),
+                            line.value("content", ""), line.value("bytes", false)});
   }
   return mark;
 }
@@ -76,7 +76,9 @@ bool has_content(const BatchMark::File& file, std::uint64_t (*hash_at)(const fs:
 
 }  // namespace
 
-bool is_unchanged_output(const BatchMark::File& file) { return has_content(file, output_hash_at); }
+bool is_unchanged_output(const BatchMark::File& file) {
+  return has_content(file, file.bytes ? output_hash_at : content_hash_at);
+}
 
 bool is_up_to_date(const BatchMark& mark, const std::string& key) {
   return mark.key == key &&
@@ -96,7 +98,7 @@ std::string edited_output(const std::vector<BatchMark::File>& outputs) {
 std::string list_of(const std::vector<BatchMark::File>& outputs) {
   std::string text;
   for (const BatchMark::File& output : outputs)
-    text += nlohmann::json{{"wrote", output.path}, {"content", output.content}}.dump(
+    text += nlohmann::json{{"wrote", output.path}, {"content", output.content}, {"bytes", output.bytes}}.dump(
                 -1, ' ', false, nlohmann::json::error_handler_t::replace) +
             '\n';
   return text;

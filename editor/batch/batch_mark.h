@@ -10,6 +10,7 @@ namespace rebake {
 struct BatchMark {
   struct File {
     std::string path, content;  ///< content: hash, hexadecimal
+    bool bytes = false;         ///< an output: the hash is output_hash_at(); earlier versions: content_hash_at()
   };
   std::string key;
   bool below_requested_psnr = false;  ///< an export missed the PSNR that the script requires

@@ -114,7 +114,7 @@ bool written_by_batch(const BatchOptions& options, const std::string& name) {
   return std::any_of(wrote.begin(), wrote.end(), [&](const BatchMark::File& file) {
     const fs::path path = fs::weakly_canonical(file.path);
     if (std::mismatch(result.begin(), result.end(), path.begin(), path.end()).first == result.end()) return true;
-    return path.filename() == result.filename() && is_unchanged_output({result.string(), file.content});
+    return path.filename() == result.filename() && is_unchanged_output({result.string(), file.content, file.bytes});
   });
 }
 

@@ -165,9 +165,9 @@ void render_photographs(const Rendering& options) {
   for (const std::filesystem::path& file : camera_format_for(options.cameras, format).files(options.cameras))
     sources.add_file(file, "a camera file of this run");
   // Photographs and masks may be rendered themselves. Other pictures of their names may be those of an earlier run.
-  for (const std::filesystem::path& file : named_files(options.cameras, cameras))
+  for (const std::filesystem::path& file : protected_files(options.cameras, cameras))
     sources.add_file(file, "a file of the capture");
-  for (const std::filesystem::path& file : captured_files_at(options.out, named_files))
+  for (const std::filesystem::path& file : captured_files_at(options.out, protected_files))
     sources.add_file(file, "a file of the capture there");
   for (const std::filesystem::path& file : capture_files(options.cameras, cameras))
     if (!is_rendered_picture(file)) sources.add_file(file, "a file of the capture");

@@ -32,9 +32,9 @@ using nlohmann::json;
 
 // A line of --list-files; `what`: "read" or "wrote".
 std::string line_of(const char* what, const std::filesystem::path& path, std::uint64_t content) {
-  return json{{what, absolute_path(path).string()}, {"content", hash_text(content)}}.dump(
-             -1, ' ', false, json::error_handler_t::replace) +
-         '\n';
+  json line{{what, absolute_path(path).string()}, {"content", hash_text(content)}};
+  if (what == std::string_view("wrote")) line["bytes"] = true;
+  return line.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
 // Content hashes by path.

@@ -210,6 +210,12 @@ SourceGuard Document::own_sources() const {
   return guard;
 }
 
+void Document::restore_protections(const SourceGuard& before) {
+  imported_ = before;
+  add_sources(imported_, history_.edits());
+  add_sources(imported_, history_.undone());
+}
+
 void Document::protect_files_of(const json& edit) {
   if (edit.is_object() && edit.contains("mesh") && edit.at("mesh").is_string())
     protect_file(edit.at("mesh").get<std::string>(), "a cage mesh that this run reads");

@@ -53,6 +53,9 @@ class Document {
   void release_contents(const std::filesystem::path& folder) { imported_.release_contents(folder); }
   /// Protects a file from being overwritten: SourceGuard::add_file().
   void protect_file(const std::filesystem::path& file, const std::string& role) { imported_.add_file(file, role); }
+  /// The present protections, and their restoration: of those added since, only sources of edits stay protected.
+  const SourceGuard& protections() const { return imported_; }
+  void restore_protections(const SourceGuard& before);
   /// Protects the file that is read while an edit's JSON is parsed: the mesh of a cage.
   void protect_files_of(const nlohmann::json& edit);
 

@@ -94,7 +94,7 @@ void refuse_replacing_work(const fs::path& path) {
 void refuse_replacing_captured(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) return;
-  for (const fs::path& file : captured_files_at(absolute_path(path).parent_path(), named_files))
+  for (const fs::path& file : captured_files_at(absolute_path(path).parent_path(), protected_files))
     if (fs::equivalent(file, path, error))
       throw FileError(path, "is a photograph or mask of the capture in its folder; name another folder");
 }

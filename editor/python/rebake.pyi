@@ -247,7 +247,7 @@ class Document:
         """Moves nodes into a new group; their positions in the world stay.
 
         nodes: nodes to group
-        as_: name of the group; empty: group
+        as_: name of the group; empty: group, or group.2, … if that is taken
         """
     def reorder(self, *, node: Node, index: int, parent: Node | None = None, top: bool = False) -> None:
         """Moves a node to another position or group in the outline; its position in the world stays.
@@ -353,7 +353,7 @@ class Document:
         sun: sky: direction towards the sun, in object space as read; with match in world space
         sun_color: sky: irradiance / π of a surface facing the sun, linear red, green and blue; 0, 0, 0: no sun
         sun_degrees: sky: angular radius of the sun, up to 45; softens shadows (degrees)
-        picture: equirectangular environment map, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, WebP; its centre faces -z; bright spots become suns
+        picture: equirectangular environment map, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, WebP; its centre faces -z; bright spots become suns; source picture without one: the present picture
         picture_degrees: rotation of the environment map about the up axis (degrees)
         content: expected hash of the picture, from projects and journals; other contents are refused
         bounce: given light: linear radiance of occluders, for indirect light
@@ -638,7 +638,7 @@ class Document:
         lattice: a box around the triangles; number of cells along x, y and z
         wrap: a wrap of the opaque triangles; coarseness relative to their size, 0.005 to 0.5 (share)
         mesh: a closed triangle mesh in world space: a file (.obj, .off, .ply), or vertices and faces
-        moves: moves of cage vertices; regions are in world units, or relative to the cage's box if the edit's field frame is bounds
+        moves: moves of cage vertices; regions are in world units, or relative to the cage's box if the edit's field frame is bounds; a vertex in several spheres follows the one with the nearest centre
         fixed: cage vertices that stay fixed
         iterations: maximum number, 1 to 1000; stops earlier if no vertex moves by more than a millionth of the cage's size
         """

@@ -250,7 +250,8 @@ void prepare_study_folder(const Study& study, const std::filesystem::path& folde
   }
   const auto known = written_files(base);
   // Records of earlier versions do not contain the table.
-  const bool old_record = !known.empty() && !known.contains(study.name + std::string(".csv"));
+  const bool old_record =
+      std::filesystem::exists(base + ".json", error) && !known.contains(study.name + std::string(".csv"));
   for (const char* ending : files_of_study) {
     const std::filesystem::path file = base + ending;
     if (!std::filesystem::exists(file, error)) continue;

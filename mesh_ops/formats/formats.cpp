@@ -157,7 +157,7 @@ std::string folder_title(const fs::path& path) { return absolute_path(scene_root
 
 std::string scene_title(const fs::path& scene) {
   std::error_code error;
-  return fs::is_regular_file(scene, error) ? scene.stem().string() : folder_title(scene);
+  return fs::is_regular_file(scene, error) && scene_root(scene) == scene ? scene.stem().string() : folder_title(scene);
 }
 
 std::span<const Format> formats() { return table; }

@@ -62,7 +62,7 @@ const char* read_formats_help();
 
 /// Display name of a scene: the last component of scene_root().
 std::string folder_title(const std::filesystem::path& path);
-/// As folder_title(), but of a file without its extension: the name of a scene in a batch.
+/// As folder_title(), but of a scene that is a file without its extension: the name of a scene in a batch.
 std::string scene_title(const std::filesystem::path& scene);
 
 /// Reads a scene of any known format. A MobileNeRF folder becomes one node with the name of the folder. `options`

@@ -262,7 +262,9 @@ class ViewTest(WindowCase):
         editor.click("tabs/light/sky")
         editor.click("tabs/light/environment-map")
         editor.until_ops("import", "light", "light", "light", "light", "light")
-        self.assertEqual(editor.last_edit()["picture"], str(sky))
+        self.assertEqual(editor.last_edit()["source"], "picture")
+        editor.until(lambda state: "tabs/light/another picture" in state["items"], "the picture again")
+        self.assertEqual(editor.last_edit()["picture"], "", "the scene has it, so its file is not needed again")
 
     def test_the_sheet_of_keys_holds_keys_back(self):
         editor = self.open_ficus()

@@ -263,10 +263,8 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
   return result;
 }
 
-double distance_from_center(const CageMove& move, const Cage& cage, bool shares, std::uint32_t vertex) {
-  if (!move.sphere) return 0;
-  const Box box = surface_box(cage);
-  return distance_between(in_region(cage.vertices[vertex], box, shares), move.sphere->center, box, shares);
+double distance_from_center(const CageMove& move, const Box& box, bool shares, const Vec3& vertex) {
+  return distance_between(in_region(vertex, box, shares), move.sphere->center, box, shares);
 }
 
 std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool shares) {

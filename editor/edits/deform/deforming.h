@@ -87,8 +87,8 @@ struct Codec<CageMoves> {
 /// cage's box (0 … 1). Throws FieldError for a vertex number out of range and if there is no vertex.
 std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, bool shares);
 
-/// World distance of a cage vertex from the centre of the move's sphere; 0 if the move names vertices or a box.
-double distance_from_center(const CageMove& move, const Cage& cage, bool shares, std::uint32_t vertex);
+/// World distance of a cage vertex from the centre of the move's sphere. `box`: of the cage's surface.
+double distance_from_center(const CageMove& move, const Box& box, bool shares, const Vec3& vertex);
 
 /// Positions of all cage vertices after the moves, applied one after another. Each move chooses its vertices by their
 /// original positions. Throws FieldError for non-finite results.

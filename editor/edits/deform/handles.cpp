@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <limits>
 #include <map>
 
 #include "mesh_ops/deform/handles/as_rigid_as_possible.h"
@@ -12,24 +15,37 @@ namespace rebake {
 
 namespace {
 
-// The vertices that are fixed or moved. One that several regions contain follows that with the nearest centre; among
-// equally near ones the last, moved rather than fixed.
+// The vertices that are fixed or moved. Moves by numbers and boxes are applied one after another, and moved vertices
+// are not fixed. Of several spheres that contain a vertex, the one with the nearest centre counts; among equally near
+// ones the last, moved rather than fixed.
 std::vector<ConstrainedVertex> held_vertices(const HandlesDeform& edit, const Cage& cage) {
   const bool shares = edit.target.frame == CoordinateFrame::bounds;
+  const Box box = surface_box(cage);
+  constexpr double any_nearer = std::numeric_limits<double>::infinity();
   struct Hold {
     Vec3 place;
-    double away;
+    double away;  // from the centre of its sphere
   };
   std::map<std::uint32_t, Hold> held;
   const auto hold = [&](const CageMove& move, const std::vector<Vec3>& places) {
     for (const std::uint32_t v : points_of(move, cage, shares)) {
-      const double away = distance_from_center(move, cage, shares, v);
+      const double away = move.sphere ? distance_from_center(move, box, shares, cage.vertices[v]) : any_nearer;
       const auto [found, first] = held.try_emplace(v, Hold{places[v], away});
-      if (!first && away <= found->second.away) found->second = {places[v], away};
+      if (!first && (away <= found->second.away || !move.sphere)) found->second = {places[v], away};
     }
   };
   for (const CageMove& move : edit.fixed) hold(move, cage.vertices);
-  for (const CageMove& move : edit.moves) hold(move, moved_points({move}, cage, shares));
+  CageMoves others;
+  std::copy_if(edit.moves.begin(), edit.moves.end(), std::back_inserter(others),
+               [](const CageMove& move) { return !move.sphere; });
+  const std::vector<Vec3> by_others = moved_points(others, cage, shares);
+  for (const CageMove& move : others) hold(move, by_others);
+  for (const CageMove& move : edit.moves) {
+    if (!move.sphere) continue;
+    CageMoves with_sphere = others;
+    with_sphere.push_back(move);
+    hold(move, moved_points(with_sphere, cage, shares));
+  }
   std::vector<ConstrainedVertex> places;
   for (const auto& [vertex, one] : held) places.push_back({vertex, one.place});
   return places;
@@ -69,7 +85,7 @@ REBAKE_DESCRIBE_EDIT(
       CageSource::fields(edit.cage, visit);
       visit("moves", edit.moves, Need::required,
             "moves of cage vertices; regions are in world units, or relative to the cage's box if "
-            "the edit's field frame is bounds");
+            "the edit's field frame is bounds; a vertex in several spheres follows the one with the nearest centre");
       visit("fixed", edit.fixed, Need::optional, "cage vertices that stay fixed");
       visit("iterations", edit.iterations, Need::optional,
             "maximum number, 1 to 1000; stops earlier if no vertex moves by more than a millionth of the cage's size");

@@ -48,8 +48,8 @@ Scene apply(const Scene& scene, const Align& edit) {
   };
   std::vector<Placed> list;
   for (const NodeRef& node : edit.nodes) {
-    if (std::any_of(list.begin(), list.end(), [&](const Placed& other) { return other.node.id == node.id; }))
-      throw FieldError("nodes", "must not name a node twice");
+    // One that is named twice counts once.
+    if (std::any_of(list.begin(), list.end(), [&](const Placed& other) { return other.node.id == node.id; })) continue;
     for (NodeId above = parent_of(scene, node.id); above != NodeId::none; above = parent_of(scene, above))
       if (std::any_of(edit.nodes.begin(), edit.nodes.end(), [&](const NodeRef& other) { return other.id == above; }))
         throw FieldError("nodes", "must not contain a node and a group above it");

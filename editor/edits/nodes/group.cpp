@@ -34,7 +34,7 @@ Scene apply(const Scene& scene, const Group& edit) {
 REBAKE_DESCRIBE_EDIT(
     Group, "Moves nodes into a new group; their positions in the world stay.", (auto& edit, auto& visit) {
       visit("nodes", edit.nodes, Need::required, "nodes to group");
-      visit("as", edit.as, Need::optional, "name of the group; empty: group");
+      visit("as", edit.as, Need::optional, "name of the group; empty: group, or group.2, … if that is taken");
     })
 
 }  // namespace rebake

@@ -130,6 +130,7 @@ LightEdit light_edit(const SceneLight& light, const Scene& scene) {
 }
 
 std::string whole_title(const LightEdit& edit) {
+  if (edit.light_source() == "picture" && edit.picture.empty()) return "Changed the light";
   if (edit.light_source() == "picture") return "Light from " + std::filesystem::path(edit.picture).filename().string();
   return edit.effects == std::vector<std::string>{"none"} ? "Light stays as baked" : "Light follows edits";
 }
@@ -158,7 +159,7 @@ REBAKE_DESCRIBE_EDIT(
             "sky: angular radius of the sun, up to 45; softens shadows", Unit::degrees);
       visit("picture", edit.picture, Need::optional,
             "equirectangular environment map, twice as wide as high: OpenEXR, Radiance HDR, PNG, JPEG, TIFF, WebP; "
-            "its centre faces -z; bright spots become suns");
+            "its centre faces -z; bright spots become suns; source picture without one: the present picture");
       visit("picture_degrees", edit.picture_degrees, Need::optional,
             "rotation of the environment map about the up axis", Unit::degrees);
       visit("content", edit.content, Need::optional,

@@ -148,18 +148,22 @@ std::set<NodeId> moving_groups(const Scene& scene, NodeId node) {
   return groups;
 }
 
-// Throws EditError if films move the nodes differently. Keyframes of a node are relative to its parent and its space.
-void check_motions(const Scene& scene, const PlacedNode& first, const PlacedNode& part) {
+// Throws EditError if the nodes have different keyframes. Notes if films move them differently nevertheless, since
+// keyframes are relative to a node's parent and its space.
+void check_motions(const Scene& scene, const PlacedNode& first, const PlacedNode& part, Report& report) {
   const NodeMotion still;
   const auto motion = [&](const PlacedNode& one) { return one.node->motion ? *one.node->motion : still; };
+  if (!(motion(part) == motion(first)))
+    throw EditError(
+        fmt::format("\"{}\" and \"{}\" have different keyframes, so they cannot become one object: remove "
+                    "the keyframes, or group the nodes instead",
+                    first.node->name, part.node->name));
   const bool same_space = parent_of(scene, first.node->id) == parent_of(scene, part.node->id) &&
                           first.to_world.matrix() == part.to_world.matrix();
-  if (!(motion(part) == motion(first)) || (!motion(part).empty() && !same_space) ||
+  if ((!motion(part).empty() && !same_space) ||
       moving_groups(scene, first.node->id) != moving_groups(scene, part.node->id))
-    throw EditError(fmt::format(
-        "\"{}\" and \"{}\" have different keyframes, or the same in different places, so they cannot become "
-        "one object: remove the keyframes, or group the nodes instead",
-        first.node->name, part.node->name));
+    report.lines.push_back(fmt::format("note: films move \"{}\" as \"{}\" from now on, and no longer in its own place",
+                                       part.node->name, first.node->name));
 }
 
 // Adds the members of a part's mlp.json that Rebake does not know. Reports those of which another value stays.
@@ -175,6 +179,7 @@ void join_members(BakedObject& merged, const Node& part, Report& report) {
 Outcome apply(const Scene& scene, const Merge& edit) {
   if (edit.nodes.size() < 2) throw FieldError("nodes", "must name at least two nodes");
   std::vector<PlacedNode> parts;
+  Report report;
   for (const NodeRef& node : edit.nodes) {
     parts.push_back(editable(scene, node.id));
     const PlacedNode& part = parts.back();
@@ -187,7 +192,7 @@ Outcome apply(const Scene& scene, const Merge& edit) {
           fmt::format("\"{}\" and \"{}\" have different decoders or axes, so they cannot become one object: "
                       "group them instead",
                       parts.front().node->name, part.node->name));
-    check_motions(scene, parts.front(), part);
+    check_motions(scene, parts.front(), part, report);
     for (std::size_t k = 0; k + 1 < parts.size(); ++k)
       if (parts[k].node->id == part.node->id)
         throw FieldError("nodes", fmt::format("\"{}\" is named twice", part.node->name));
@@ -208,7 +213,6 @@ Outcome apply(const Scene& scene, const Merge& edit) {
   merged->bodies.clear();
   const std::vector<std::string> selections = selection_names(parts);
   std::vector<SelectedSet> whole;
-  Report report;
   for (const PlacedNode& part : parts) {
     join_members(*merged, *part.node, report);
     if (part.visible != first.visible)

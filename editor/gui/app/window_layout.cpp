@@ -1,5 +1,4 @@
 #include "editor/gui/app/window_layout.h"
-#include "editor/edits/select/select_picture.h"
 
 #include <fmt/format.h>
 
@@ -317,7 +316,7 @@ void WindowLayout::status() {
   }
   // On the right: the size of the selection, and buttons for the tabs of the bottom panel.
   std::string selected = editor_.selected_words();
-  if (!selected.empty() && !editor_.visible_selections().empty()) selected += ", visible sides only";
+  if (!selected.empty() && editor_.visible_selection_count() > 0) selected += ", visible sides only";
   const float buttons = px(6 * 30);
   ImGui::SameLine(ImGui::GetWindowWidth() - buttons - px(20) - ImGui::CalcTextSize(selected.c_str()).x);
   ImGui::TextDisabled("%s", selected.c_str());

@@ -129,7 +129,7 @@ void AdjustPanel::draw(ToolContext& editor, const ImVec2& corner, const ImVec2& 
     const double size =
         std::max(1e-300, world_bounds(now.scene).isEmpty() ? 1 : world_bounds(now.scene).diagonal().norm());
     const double unit = std::pow(10, std::floor(std::log10(size)) - 2);
-    ImGui::PushID(last.value());  // a text box must not outlive its step either
+    ImGui::PushID(static_cast<int>(now.steps_done));  // a text box must not outlive its step either
     for (const AdjustableField& field : fields)
       if (const ui::Changed one = draw_field(field, object_, unit); one != ui::Changed::nothing) changed = one;
     ImGui::PopID();
@@ -147,7 +147,13 @@ void AdjustPanel::draw(ToolContext& editor, const ImVec2& corner, const ImVec2& 
     if (changing_) {
       editor.show_preview(list, *now.before_last);
     } else {
-      editor.adjust(list, {}, [this] { of_.reset(); });
+      // The step that was made is the panel's own: a drag that has begun since goes on.
+      editor.adjust(
+          list,
+          [this, &editor] {
+            if (changing_) of_ = editor.now->done.back();
+          },
+          [this] { of_.reset(); });
     }
   } catch (const std::exception& error) {
     editor.messages.fail(error.what());

@@ -110,11 +110,14 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
   else
     for (const std::optional<NodeRef>& one : editor.scope(selection)) result.push_back(with_node(one->id));
   // A stored selection need not exist in all of them.
-  if (op_ == Select::op && line.contains("saved") && line.at("saved").is_string())
-    std::erase_if(result, [&](const json& one) {
+  if (op_ == Select::op && line.contains("saved") && line.at("saved").is_string()) {
+    std::vector<json> with_it = result;
+    std::erase_if(with_it, [&](const json& one) {
       const NodePtr of = find(editor.scene(), NodeId(one.at("node").get<std::uint64_t>()));
-      return result.size() > 1 && !of->saved_selections.contains(line.at("saved").get<std::string>());
+      return !of->saved_selections.contains(line.at("saved").get<std::string>());
     });
+    if (!with_it.empty()) return with_it;
+  }
   if (result.empty())
     throw EditError((selection ? "nothing is selected " : "there is no node to edit ") + editor.scope_words());
   return result;
@@ -134,14 +137,16 @@ void EditForm::show(DocumentEditor& editor) {
     if (text == previewed_ && previewed_on_ == editor.scene().roots && previewed_with_ == editor.scene().views &&
         shown == request_)
       return;
+    std::vector<Edit> edits;
+    for (const json& line : wanted) edits.push_back(read_edit(line, editor.scene()));
     previewed_ = text;
     previewed_on_ = editor.scene().roots;
     previewed_with_ = editor.scene().views;
-    request_ = 0;
-    std::vector<Edit> edits;
-    for (const json& line : wanted) edits.push_back(read_edit(line, editor.scene()));
     // Imports have no preview: their files would be read twice.
-    if (edits.front().is<Import>()) return;
+    if (edits.front().is<Import>()) {
+      request_ = 0;
+      return;
+    }
     request_ = editor.show_preview(std::move(edits));
     problem_.clear();
   } catch (const Error& error) {
@@ -180,7 +185,11 @@ void EditForm::draw(DocumentEditor& editor, DialogState& dialogs, float right) {
     op_.clear();
     return;
   }
-  if (op_ != dialogs.form) begin(editor, dialogs.form);
+  if (op_ != dialogs.form) {
+    // That of the form before.
+    if (request_ != 0 && editor.requested_preview() == request_) editor.drop_preview();
+    begin(editor, dialogs.form);
+  }
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   // At the viewport's top right corner, so that it does not cover the outliner, which sets the scope.

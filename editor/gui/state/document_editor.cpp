@@ -325,20 +325,25 @@ void DocumentEditor::go_to(std::size_t steps) {
       });
 }
 
-std::vector<SelectPicture> DocumentEditor::visible_selections() const {
-  std::vector<SelectPicture> last;
+std::size_t DocumentEditor::visible_selection_count() const {
+  std::size_t last = 0;
   std::map<NodeId, bool> begins;  // whether the first of these edits for a node replaced its selection; none: all nodes
-  for (auto edit = now->done.rbegin(); edit != now->done.rend(); ++edit) {
+  for (auto edit = now->done.rbegin(); edit != now->done.rend(); ++edit, ++last) {
     const auto* picture = edit->as<SelectPicture>();
     if (picture == nullptr || picture->through) break;
     if (picture->mode != SelectMode::set && picture->mode != SelectMode::add) break;
     bool& begun = begins[picture->node ? picture->node->id : NodeId::none];
     if (begun) break;
     begun = picture->mode == SelectMode::set;
-    last.insert(last.begin(), *picture);
   }
-  const bool all = std::all_of(begins.begin(), begins.end(), [](const auto& one) { return one.second; });
-  return all ? last : std::vector<SelectPicture>();
+  return std::all_of(begins.begin(), begins.end(), [](const auto& one) { return one.second; }) ? last : 0;
+}
+
+std::vector<SelectPicture> DocumentEditor::visible_selections() const {
+  std::vector<SelectPicture> last;
+  for (std::size_t k = now->done.size() - visible_selection_count(); k < now->done.size(); ++k)
+    last.push_back(*now->done[k].as<SelectPicture>());
+  return last;
 }
 
 std::string DocumentEditor::title_of_step(const void* edit) const {

@@ -132,6 +132,8 @@ struct DocumentEditor {
   /// The last edits, if the selection consists of what they selected in pictures and all of them took visible triangles
   /// only; else nothing.
   std::vector<SelectPicture> visible_selections() const;
+  /// Their number.
+  std::size_t visible_selection_count() const;
 
  protected:
   /// Fetches messages and the latest snapshot. Returns whether the snapshot is another one.

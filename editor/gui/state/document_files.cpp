@@ -296,9 +296,18 @@ void Project::save_script(const fs::path& file) {
 void Project::run_script(const fs::path& file) {
   worker_.start("script", [file](Session& session) {
     const std::string script = read_input(file);
-    session.document.protect_file(file, "the script of this run");
-    protect_input_files(session.document, script, {});
-    rebake::run_script(session, script, file, {});
+    // Only while it runs.
+    const SourceGuard before = session.document.protections();
+    const auto restore = [&] { session.document.restore_protections(before); };
+    try {
+      session.document.protect_file(file, "the script of this run");
+      protect_input_files(session.document, script, {});
+      rebake::run_script(session, script, file, {});
+    } catch (...) {
+      restore();
+      throw;
+    }
+    restore();
   });
 }
 

@@ -65,7 +65,7 @@ class TrainingJob {
   std::function<void()> wake_;
   State state_ = State::none;
   TrainAction action_;
-  bool replaces_ = false;  ///< the output folder existed when the user started the training
+  bool replaces_ = false;  ///< the output folder had contents when the user started the training
   TrainingPreview preview_;
   NodePtr node_;
 

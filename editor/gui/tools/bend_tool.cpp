@@ -365,7 +365,7 @@ void BendTool::options(ToolContext& editor) {
   const ui::Changed changed = ui::number_field("Falloff", falloff, "{:.3g}", step, px(70));
   if (changed == ui::Changed::dragged || changed == ui::Changed::finished) falloff_ = std::max(0.0, falloff);
   ui::tip("Falloff", "", "Width of the transition at the border of the selection, in scene units. 0: hard border.");
-  if (found_ && found_->touched >= interleaved && !editor.visible_selections().empty()) {
+  if (found_ && found_->touched >= interleaved && editor.visible_selection_count() > 0) {
     ui::flow(px(180));
     if (ui::primary_button("Select occluded triangles##select-occluded")) {
       std::vector<Edit> all;

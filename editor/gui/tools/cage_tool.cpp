@@ -143,7 +143,10 @@ void CageTool::commit(ToolContext& editor) {
   steps_.resize(at_ + 1);
   steps_.push_back(moved_);
   const CageDeform edit = edit_for(moved_);
-  const auto done = [this] { ++at_; };
+  const auto done = [this, &editor] {
+    ++at_;
+    roots_ = editor.scene().roots;  // a drag that has begun since goes on
+  };
   const auto failed = [this] {
     // Drop the step that was not made.
     steps_.resize(at_ + 1);

@@ -145,7 +145,10 @@ void HandlesTool::commit(ToolContext& editor) {
   steps_.resize(at_ + 1);
   steps_.push_back(pins_);
   const std::optional<HandlesDeform> wanted = edit_for(pins_);
-  const auto done = [this] { ++at_; };
+  const auto done = [this, &editor] {
+    ++at_;
+    roots_ = editor.scene().roots;  // a drag that has begun since goes on
+  };
   const auto failed = [this] {
     steps_.resize(at_ + 1);
     if (at_ > 0)
@@ -202,7 +205,10 @@ void HandlesTool::pointer(ToolContext& editor, const ViewportProjection& lens, c
   }
   if (!pointer.released) return;
   held_ = -1;
-  if (pins_[k].moved != before_[k].moved) commit(editor);
+  if (pins_[k].moved != before_[k].moved)
+    commit(editor);
+  else
+    editor.drop_preview();
 }
 
 void HandlesTool::remove_pin(ToolContext& editor, std::size_t pin) {

@@ -76,12 +76,23 @@ std::vector<fs::path> named_files(const fs::path& camera_file, const std::vector
   const fs::path folder = capture_folder(camera_file);
   std::vector<fs::path> files;
   for (const PhotoCamera& camera : cameras)
-    // Also where they are not read from, outside of the capture, and in the folder of COLMAP.
-    for (const fs::path& place : {folder, folder / "images"})
-      if (fs::path file = existing(place, camera.name); !file.empty()) files.push_back(std::move(file));
+    if (fs::path file = photograph_at(folder, camera.name); !file.empty()) files.push_back(std::move(file));
   for (const PhotoCamera& camera : cameras)
     if (std::error_code error; !camera.mask.empty() && fs::is_regular_file(folder / camera.mask, error))
       files.push_back(folder / camera.mask);
+  return files;
+}
+
+std::vector<fs::path> protected_files(const fs::path& camera_file, const std::vector<PhotoCamera>& cameras) {
+  const fs::path folder = capture_folder(camera_file);
+  std::vector<fs::path> files = named_files(camera_file, cameras);
+  std::error_code error;
+  const fs::path place_of_cameras =
+      fs::is_directory(camera_file, error) ? camera_file : fs::absolute(camera_file).parent_path();
+  const bool is_colmap = !fs::equivalent(folder, place_of_cameras, error);
+  for (const PhotoCamera& camera : cameras)
+    for (const fs::path& place : {folder, is_colmap ? folder / "images" : folder})
+      if (fs::path file = existing(place, camera.name); !file.empty()) files.push_back(std::move(file));
   return files;
 }
 

@@ -24,6 +24,11 @@ std::vector<std::filesystem::path> capture_files(const std::filesystem::path& ca
 std::vector<std::filesystem::path> named_files(const std::filesystem::path& camera_file,
                                                const std::vector<PhotoCamera>& cameras);
 
+/// named_files(), and photographs that are not read because they lie outside of the capture; COLMAP names them in its
+/// folder `images`. For guards.
+std::vector<std::filesystem::path> protected_files(const std::filesystem::path& camera_file,
+                                                   const std::vector<PhotoCamera>& cameras);
+
 /// Returns files of a capture.
 using FilesOfCapture = std::vector<std::filesystem::path> (*)(const std::filesystem::path& camera_file,
                                                               const std::vector<PhotoCamera>& cameras);

@@ -103,18 +103,6 @@ TEST_F(LightModel, NeverReplacesOtherFiles) {
   expect_error(R"({"op": "use_light_model", "model": "{here}/notes.txt"})", "notes.txt");
 }
 
-TEST_F(LightModel, ThatIsUsedIsNotReplaced) {
-  run(import);
-  const std::string train =
-      R"({"op": "train_light", "edits": [{"op": "bend", "degrees": 60}], )" + few + R"(, "out": "{here}/m.light"})";
-  run(train);
-  const std::string model = read_file(folder_.path() / "m.light");
-  // Line by line, as in the window and in Python, nothing knows the next one.
-  run(R"({"op": "use_light_model", "model": "{here}/m.light"})");
-  expect_error(train, "is a light model of this run");
-  EXPECT_EQ(read_file(folder_.path() / "m.light"), model);
-}
-
 TEST_F(LightModel, OfAnotherObjectIsRefused) {
   run(import);
   run(R"({"op": "train_light", "edits": [{"op": "bend", "degrees": 60}], "out": "{here}/m.light", )" + few + "}");
