@@ -62,7 +62,7 @@ struct TrainingObserver {
   std::function<void(const TrainingPreview&)> preview;  ///< from time to time, at most a tenth of the time
   std::function<bool()> enough;                         ///< whether to leave out the rest of the steps
   std::function<SourceGuard()> more_sources;            ///< files and folders that must not be overwritten
-  bool may_replace = true;  ///< the user agreed to replace what is in the output folder, or it did not exist before
+  bool may_replace = true;  ///< whether an output folder that has contents at the start may be replaced
   /// Whether a training that is to stop goes on instead, because its checkpoint cannot be written.
   std::function<bool(const std::string& problem)> goes_on_unsaved;
 };

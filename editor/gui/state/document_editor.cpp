@@ -241,19 +241,13 @@ void DocumentEditor::replace_last(Replace how, const std::vector<Edit>& list, st
 
 namespace {
 
-// Steps that a job undid or redid.
-struct StepsMade {
-  int count = 0;
-  const void* edit = nullptr;  // the first or last one of the last step
-};
-
-void undo_step_in(Session& session, StepsMade& made) {
+void undo_step_in(Session& session, DocumentEditor::StepsMade& made) {
   if (!session.document.undo_step(session.progress)) return;
   const History& history = session.document.history();
   ++made.count;
   made.edit = history.entries()[history.undo_count()].edit.value();
 }
-void redo_step_in(Session& session, StepsMade& made) {
+void redo_step_in(Session& session, DocumentEditor::StepsMade& made) {
   if (!session.document.redo_step(session.progress)) return;
   const History& history = session.document.history();
   ++made.count;
@@ -262,35 +256,23 @@ void redo_step_in(Session& session, StepsMade& made) {
 
 }  // namespace
 
-void DocumentEditor::undo(int steps) {
+void DocumentEditor::undo(int steps) { move_in_history(steps, undo_step_in, "Undid: "); }
+void DocumentEditor::redo(int steps) { move_in_history(steps, redo_step_in, "Redid: "); }
+
+void DocumentEditor::move_in_history(int steps, void (*step)(Session&, StepsMade&), const char* did) {
   at_rest_ = false;
   const auto made = std::make_shared<StepsMade>();
   jobs.worker.start(
-      "undo",
-      [steps, made](Session& session) {
-        for (int before = -1; made->count < steps && before != made->count; undo_step_in(session, *made))
-          before = made->count;
+      step == undo_step_in ? "undo" : "redo",
+      [steps, step, made](Session& session) {
+        for (int before = -1; made->count < steps && before != made->count; step(session, *made)) before = made->count;
       },
-      [this, made] {
-        status = "Undid: " + (made->count > 1    ? fmt::format("{} steps", made->count)
-                              : made->count == 0 ? "nothing"
-                                                 : title_of_step(made->edit));
-      });
+      [this, made, did] { status = did + words_of(*made); });
 }
-void DocumentEditor::redo(int steps) {
-  at_rest_ = false;
-  const auto made = std::make_shared<StepsMade>();
-  jobs.worker.start(
-      "redo",
-      [steps, made](Session& session) {
-        for (int before = -1; made->count < steps && before != made->count; redo_step_in(session, *made))
-          before = made->count;
-      },
-      [this, made] {
-        status = "Redid: " + (made->count > 1    ? fmt::format("{} steps", made->count)
-                              : made->count == 0 ? "nothing"
-                                                 : title_of_step(made->edit));
-      });
+
+std::string DocumentEditor::words_of(const StepsMade& made) const {
+  if (made.count == 0) return "nothing";
+  return made.count > 1 ? fmt::format("{} steps", made.count) : title_of_step(made.edit);
 }
 
 void DocumentEditor::go_to(std::size_t steps) {
@@ -320,8 +302,7 @@ void DocumentEditor::go_to(std::size_t steps) {
       },
       [this, made, undoes] {
         if (made->count == 0) return;
-        status = (undoes ? "Undid: " : "Redid: ") +
-                 (made->count > 1 ? fmt::format("{} steps", made->count) : title_of_step(made->edit));
+        status = (undoes ? "Undid: " : "Redid: ") + words_of(*made);
       });
 }
 

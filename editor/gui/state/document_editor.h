@@ -105,6 +105,11 @@ struct DocumentEditor {
   void revise(const std::vector<Edit>& list, std::function<void()> then = {}, std::function<void()> otherwise = {});
   void undo(int steps = 1);
   void redo(int steps = 1);
+  /// Steps that a job has undone or redone.
+  struct StepsMade {
+    int count = 0;
+    const void* edit = nullptr;  ///< address of the first or last edit of the last of these steps
+  };
   /// Undoes or redoes until this number of the steps in `now` is done; does nothing, with an error, if there are other
   /// steps by then.
   void go_to(std::size_t steps);
@@ -129,8 +134,8 @@ struct DocumentEditor {
   std::vector<NodeId> selected_out_of_scope() const;
   /// "313 selected in kettle, 12 hidden or locked, 9312 elsewhere"; empty if nothing is selected.
   std::string selected_words() const;
-  /// The last edits, if the selection consists of what they selected in pictures and all of them took visible triangles
-  /// only; else nothing.
+  /// The selecting edits that made the present selection, if all of them selected visible triangles in a picture; else
+  /// nothing.
   std::vector<SelectPicture> visible_selections() const;
   /// Their number.
   std::size_t visible_selection_count() const;
@@ -159,6 +164,10 @@ struct DocumentEditor {
   std::optional<PreviewRequest> matching_preview(const std::vector<Edit>& list) const;
   /// Picks the nodes that are not in `before`.
   void pick_new(const std::vector<PlacedNode>& before);
+  /// Undoes or redoes up to `steps` steps by `step`. `did`: start of the status text.
+  void move_in_history(int steps, void (*step)(Session&, StepsMade&), const char* did);
+  /// The title of one step, or "N steps".
+  std::string words_of(const StepsMade& made) const;
   /// Title of the step whose first or last edit this is; empty if there is none.
   std::string title_of_step(const void* edit) const;
   std::optional<PreviewRequest> asked_;  ///< the last requested preview

@@ -213,7 +213,7 @@ TEST(SelectEdit, SpheresInTheBoundsOfAFlatObjectDoNotDependOnItsSize) {
   }
 }
 
-// What lies before the camera's near plane is not drawn, so it hides nothing from the eraser.
+// Triangles in front of the near plane are not drawn and must not occlude others for erase.
 TEST(SelectEdit, ErasingSeesThroughWhatTheNearPlaneCuts) {
   Scene scene = scene_of(made_object({.holes = false}), "ball");
   Node wall;

@@ -182,7 +182,7 @@ TEST(CurvedForm, SpinesThatTurnBackMoveOnlyWhatComesAfter) {
   }
 }
 
-// A spine that winds: parallel legs are different parts of it. What lies beyond the limit moves rigidly.
+// Parallel segments of a winding spine are different parts: points beyond the limit must move rigidly.
 TEST(CurvedForm, LegsOfAWindingSpineBeyondTheLimitMoveRigidly) {
   std::vector<Vec3> spine;
   const auto arc = [&](const Vec3& centre, double from, double to) {
