@@ -8,9 +8,9 @@
 
 namespace rebake {
 
-namespace {
-
 double psnr_of(double mean_squared_error) { return -10 * std::log10(std::max(mean_squared_error, 1e-10)); }
+
+namespace {
 
 // Mean squared error of a photograph against colours 0 … 255: `color(x, y, channel)`.
 template <class ColorAt>

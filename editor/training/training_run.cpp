@@ -42,12 +42,6 @@ bool is_own(const fs::directory_entry& entry) {
   return name == checkpoint_name && is_checkpoint(entry.path());
 }
 
-double psnr_of(double mean_squared_error) { return -10 * std::log10(std::max(mean_squared_error, 1e-10)); }
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 // Cells per side that suit the photographs: half a cell per pixel, from small ones to the published grid.
 int side_for(const std::vector<FitPhotograph>& photographs) {
   std::vector<int> heights;

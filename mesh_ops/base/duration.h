@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <string>
 
@@ -10,6 +11,11 @@ namespace rebake {
 
 /// Separator between the name of a task and its estimated duration in progress messages.
 inline constexpr const char* about = ", about ";
+
+/// Seconds of wall clock since a moment.
+inline double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// An estimated duration as text: "40 s", "3 min" or "2.0 h".
 inline std::string duration_text(double seconds) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "mesh_ops/base/duration.h"
 #include "mesh_ops/light/learned/transfer_model.h"
 #include "mesh_ops/light/light_receiver.h"
 
@@ -15,7 +16,6 @@ namespace rebake {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // The common light that an object is placed in (SceneLight::match).
 struct MatchedLight {

@@ -17,6 +17,8 @@ struct RayWeights {
   double through = 1;  ///< share of light that passes all hits: 1 − Σ w
 };
 void set_weights(std::span<const double> opacities, RayWeights& result);
+/// Hits that less light reaches are not shaded.
+inline constexpr double least_light = 1e-3;
 
 /// Derivatives of a loss by the opacities, for those by the weights and by `through`. No division: opacities may be 1.
 void opacity_slopes(std::span<const double> opacities, const RayWeights& at, std::span<const double> weight_slopes,

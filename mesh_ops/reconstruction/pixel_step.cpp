@@ -12,7 +12,6 @@ namespace rebake {
 
 namespace {
 
-constexpr double least_light = 1e-3;
 constexpr std::size_t pixels_per_task = 16;
 
 template <class Body>

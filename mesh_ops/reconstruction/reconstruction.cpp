@@ -15,7 +15,6 @@ namespace rebake {
 
 namespace {
 
-constexpr double least_light = 1e-3;      // hits that less light reaches are not shaded
 constexpr float least_opacity = 0.1F;     // cells below this in the acceleration grid are empty
 constexpr std::size_t cells_update = 10;  // steps between updates of the flags of empty cells
 constexpr std::size_t rays_per_task = 32;

@@ -98,11 +98,11 @@ GpuMesh upload(PreparedMesh made, const GpuSurface& surface) {
   return mesh;
 }
 
-gl::Texture upload(const LightChart& chart, GLenum format, int bytes, GLenum channels, const float* values) {
+gl::Texture upload(const LightChart& chart, GLenum format, int bytes, GLenum order, const float* values) {
   gl::Texture texture = gl::make_texture(format, chart.width, chart.height, bytes);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, chart.width, chart.height, channels, GL_FLOAT, values);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, chart.width, chart.height, order, GL_FLOAT, values);
   return texture;
 }
 

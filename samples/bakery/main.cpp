@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/export.h"
 #include "render/compare.h"
@@ -20,10 +21,6 @@ using namespace rebake;
 using namespace rebake::bakery;
 
 constexpr int held_out_views = 20;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // Bakes a model, writes it, and renders it from memory. Returns the mean PSNR of the held-out views in dB.
 double make(const Model& model, const std::filesystem::path& out, const BakeOptions& options,

@@ -8,8 +8,8 @@ namespace rebake {
 
 namespace {
 
-constexpr int rings = 120, segments = 64;
-constexpr double pi = std::numbers::pi;
+constexpr int fish_rings = 120, fish_segments = 64;
+using std::numbers::pi;
 
 double bump(double x, double width) { return std::exp(-x * x / (2 * width * width)); }
 
@@ -61,12 +61,14 @@ AnimatedObject animated_fish(int frames) {
     displacements.push_back(blendshapes(along, around));
   };
   // Cut open along the belly, from the mouth to the end of the tail fin.
-  for (int ring = 0; ring <= rings; ++ring)
-    for (int segment = 0; segment <= segments; ++segment)
-      add(static_cast<double>(ring) / rings, 2 * pi * segment / segments - pi);
-  const auto at = [](int ring, int segment) { return static_cast<std::uint32_t>(ring * (segments + 1) + segment); };
-  for (int ring = 0; ring < rings; ++ring)
-    for (int segment = 0; segment < segments; ++segment) {
+  for (int ring = 0; ring <= fish_rings; ++ring)
+    for (int segment = 0; segment <= fish_segments; ++segment)
+      add(static_cast<double>(ring) / fish_rings, 2 * pi * segment / fish_segments - pi);
+  const auto at = [](int ring, int segment) {
+    return static_cast<std::uint32_t>(ring * (fish_segments + 1) + segment);
+  };
+  for (int ring = 0; ring < fish_rings; ++ring)
+    for (int segment = 0; segment < fish_segments; ++segment) {
       object.rest.faces.push_back({at(ring, segment), at(ring + 1, segment + 1), at(ring + 1, segment)});
       object.rest.faces.push_back({at(ring, segment), at(ring, segment + 1), at(ring + 1, segment + 1)});
     }

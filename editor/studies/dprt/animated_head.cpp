@@ -8,8 +8,8 @@ namespace rebake {
 
 namespace {
 
-constexpr int rings = 64, segments = 96;
-constexpr double pi = std::numbers::pi;
+constexpr int head_rings = 64, head_segments = 96;
+using std::numbers::pi;
 // Angle from the nose at which the head is cut open, behind the ears.
 constexpr double open_from = 0.68 * pi;
 
@@ -70,22 +70,23 @@ double weight(std::size_t k, double time) {
   return 0.35 + 0.65 * wave;
 }
 
-// Calls use(polar, azimuth) for each vertex: the nose, then the rings.
+// Calls use(polar, azimuth) for each vertex: the nose, then the head_rings.
 template <class Use>
 void for_each_vertex(Use use) {
   use(0.0, 0.0);
-  for (int ring = 1; ring <= rings; ++ring)
-    for (int segment = 0; segment < segments; ++segment) use(open_from * ring / rings, 2 * pi * segment / segments);
+  for (int ring = 1; ring <= head_rings; ++ring)
+    for (int segment = 0; segment < head_segments; ++segment)
+      use(open_from * ring / head_rings, 2 * pi * segment / head_segments);
 }
 
 std::vector<Face> faces_of_head() {
   std::vector<Face> faces;
   const auto at = [](int ring, int segment) {
-    return static_cast<std::uint32_t>(1 + (ring - 1) * segments + segment % segments);
+    return static_cast<std::uint32_t>(1 + (ring - 1) * head_segments + segment % head_segments);
   };
-  for (int segment = 0; segment < segments; ++segment) {
+  for (int segment = 0; segment < head_segments; ++segment) {
     faces.push_back({0, at(1, segment), at(1, segment + 1)});
-    for (int ring = 1; ring < rings; ++ring) {
+    for (int ring = 1; ring < head_rings; ++ring) {
       faces.push_back({at(ring, segment), at(ring + 1, segment), at(ring + 1, segment + 1)});
       faces.push_back({at(ring, segment), at(ring + 1, segment + 1), at(ring, segment + 1)});
     }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/features/distill/branch_fit.h"
 #include "mesh_ops/features/distill/fuse_errors.h"
@@ -17,7 +18,6 @@ namespace rebake {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Histogram of the texels' errors, in bins of 0.1 dB PSNR.
 struct Histogram {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/features/distill/fuse.h"
 #include "mesh_ops/features/distill/fuse_errors.h"
@@ -14,7 +15,6 @@ namespace rebake {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Mean squared error of a group's texels over some observations.
 double error_over(const Student& student, const std::vector<ViewSample>& view_samples, std::size_t texels,

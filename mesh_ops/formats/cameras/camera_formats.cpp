@@ -58,7 +58,7 @@ std::vector<fs::path> single_file(const fs::path& path) {
   return {file_at(path, name)};
 }
 
-const CameraFormat table[] = {
+const CameraFormat all_formats[] = {
     {"transforms", "NeRF transforms", transforms, WorldUp::z,
      [](const fs::path& path) { return has_list(transforms_file(path), transforms, "frames"); },
      [](const fs::path& path, std::vector<std::string>& notes) {
@@ -96,7 +96,7 @@ const CameraFormat table[] = {
 
 }  // namespace
 
-std::span<const CameraFormat> camera_formats() { return table; }
+std::span<const CameraFormat> camera_formats() { return all_formats; }
 
 const CameraFormat* camera_format_at(const fs::path& path) {
   for (const CameraFormat& format : camera_formats())

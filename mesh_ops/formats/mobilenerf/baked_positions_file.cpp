@@ -12,9 +12,9 @@ namespace rebake {
 
 namespace {
 
-constexpr std::string_view mark = "rebakebp";
-constexpr std::uint32_t version = 1;
-constexpr std::size_t word_size = 4, displacement_size = 3 * word_size;
+constexpr std::string_view positions_mark = "rebakebp";
+constexpr std::uint32_t positions_version = 1;
+constexpr std::size_t displacement_size = 3 * 4;
 
 using Displacements = std::vector<Eigen::Vector3f>;
 using Bodies = std::vector<std::uint16_t>;
@@ -83,7 +83,7 @@ bool any_baked_positions(const std::vector<TextureSet>& sets) {
 }
 
 std::string write_baked_positions(const std::vector<TextureSet>& sets) {
-  SidecarWriter file(mark, version);
+  SidecarWriter file(positions_mark, positions_version);
   for (std::size_t s = 0; s < sets.size(); ++s)
     if (displacements_of(sets[s].soup) != nullptr || bodies_of(sets[s].soup) != nullptr)
       file.add(static_cast<std::uint32_t>(s), sets[s].soup.triangle_count(), places_of(sets[s].soup));
@@ -92,14 +92,15 @@ std::string write_baked_positions(const std::vector<TextureSet>& sets) {
 
 void read_baked_positions(std::string_view bytes, const std::filesystem::path& name, std::size_t bodies,
                           std::vector<TextureSet>& sets) {
-  read_sidecar(bytes, name, mark, version, "baked positions", sets, [&](SidecarReader& reader, TextureSet& set) {
-    const Soup& soup = set.soup;
-    auto displaced = read_displacements(reader, soup);
-    auto numbers = read_bodies(reader, soup, bodies);
-    set.soup = Soup(soup.shared_positions(), soup.shared_uvs(), soup.shared_faces(),
-                    soup.vertex_attributes().with(Soup::displacement, std::move(displaced)),
-                    soup.face_attributes().with(BakedObject::body, std::move(numbers)));
-  });
+  read_sidecar(bytes, name, positions_mark, positions_version, "baked positions", sets,
+               [&](SidecarReader& reader, TextureSet& set) {
+                 const Soup& soup = set.soup;
+                 auto displaced = read_displacements(reader, soup);
+                 auto numbers = read_bodies(reader, soup, bodies);
+                 set.soup = Soup(soup.shared_positions(), soup.shared_uvs(), soup.shared_faces(),
+                                 soup.vertex_attributes().with(Soup::displacement, std::move(displaced)),
+                                 soup.face_attributes().with(BakedObject::body, std::move(numbers)));
+               });
 }
 
 }  // namespace rebake

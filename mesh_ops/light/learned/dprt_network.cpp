@@ -15,7 +15,7 @@ namespace rebake {
 
 namespace {
 
-constexpr const char* kind = "rebake DPRT network 1";
+constexpr const char* network_kind = "rebake DPRT network 1";
 constexpr int most_side = 2048, most_channels = 128;
 
 // The numbers of the ranges in the order of the file.
@@ -56,7 +56,7 @@ std::vector<float> DprtNetwork::predict(const std::vector<LightSite>& sites) con
 }
 
 std::string DprtNetwork::bytes() const {
-  const nlohmann::json head = {{"kind", kind}, {"side", net_.side()}, {"channels", net_.channels()}};
+  const nlohmann::json head = {{"kind", network_kind}, {"side", net_.side()}, {"channels", net_.channels()}};
   std::string result = head.dump() + "\n";
   std::vector<float> numbers;
   for (const double c : ranges_.center) numbers.push_back(static_cast<float>(c));
@@ -74,7 +74,7 @@ DprtNetwork DprtNetwork::parsed(std::string_view bytes) {
   const std::size_t line = bytes.substr(0, 1024).find('\n');
   const nlohmann::json head =
       line == std::string_view::npos ? nlohmann::json() : nlohmann::json::parse(bytes.substr(0, line), nullptr, false);
-  if (!head.is_object() || head.value("kind", nlohmann::json()) != kind)
+  if (!head.is_object() || head.value("kind", nlohmann::json()) != network_kind)
     throw Error("the file is no network of deep precomputed radiance transfer");
   const auto number = [&](const char* key, int most) {
     const auto found = head.find(key);
