@@ -133,5 +133,7 @@ Edit read_edit(const nlohmann::json& object, const Scene& scene);
 
 /// The edit as one JSON object, with node ids instead of names.
 nlohmann::json to_json(const Edit& edit);
+/// The same with the names that the nodes have in `scene`, to which the edit applies.
+nlohmann::json to_json_with_names(const Edit& edit, const Scene& scene);
 
 }  // namespace rebake

@@ -27,18 +27,35 @@ PlacedNode editable(const Scene& scene, NodeId id) {
   return placed;
 }
 
+namespace {
+
+// The locked nodes below a node.
+std::vector<NodePtr> locked_below(const Node& node) {
+  std::vector<NodePtr> locked, open = node.children;
+  while (!open.empty()) {
+    const NodePtr below = open.back();
+    open.pop_back();
+    if (below->locked) locked.push_back(below);
+    open.insert(open.end(), below->children.begin(), below->children.end());
+  }
+  return locked;
+}
+
+}  // namespace
+
 PlacedNode editable_with_children(const Scene& scene, NodeId id) {
   PlacedNode placed = editable(scene, id);
-  std::vector<NodePtr> open = placed.node->children;
-  while (!open.empty()) {
-    const NodePtr node = open.back();
-    open.pop_back();
-    if (node->locked)
-      throw EditError(
-          fmt::format("\"{}\" contains the locked node \"{}\"; unlock it first", placed.node->name, node->name));
-    open.insert(open.end(), node->children.begin(), node->children.end());
-  }
+  for (const NodePtr& locked : locked_below(*placed.node))
+    throw EditError(
+        fmt::format("\"{}\" contains the locked node \"{}\"; unlock it first", placed.node->name, locked->name));
   return placed;
+}
+
+std::vector<std::string> locked_inside(const Scene& scene, NodeId group) {
+  std::vector<std::string> notes;
+  for (const NodePtr& locked : locked_below(*present(scene, group).node))
+    notes.push_back(fmt::format("note: this moves \"{}\" too, which is locked", locked->name));
+  return notes;
 }
 
 std::vector<PlacedNode> objects_with_selection(const Scene& scene, const std::optional<NodeRef>& node) {

@@ -16,6 +16,9 @@ PlacedNode editable(const Scene& scene, NodeId id);
 /// As editable(); also throws EditError if a node inside it is locked.
 PlacedNode editable_with_children(const Scene& scene, NodeId id);
 
+/// Notes for a report that an edit of this group moves locked nodes inside it.
+std::vector<std::string> locked_inside(const Scene& scene, NodeId group);
+
 /// The node, locked or not. Throws EditError if it is missing.
 PlacedNode present(const Scene& scene, NodeId id);
 

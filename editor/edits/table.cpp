@@ -121,6 +121,41 @@ bool is_inside(const Scene& scene, NodeId node, NodeId group) {
   return false;
 }
 
+// The groups in `scene` that move a node by keyframes of their place.
+std::vector<NodePtr> moving_groups_of(const Scene& scene, NodeId node) {
+  std::vector<NodePtr> groups;
+  for (NodeId up = parent_of(scene, node); up != NodeId::none; up = parent_of(scene, up))
+    if (const NodePtr group = find(scene, up); group->motion && !group->motion->place.empty()) groups.push_back(group);
+  return groups;
+}
+
+// Notes of groups with keyframes that the node has left or entered.
+void add_notes_of_groups(const Scene& before, const Scene& after, const NodePtr& node,
+                         std::vector<std::string>& lines) {
+  for (const NodePtr& group : moving_groups_of(before, node->id))
+    if (!is_inside(after, node->id, group->id) && find(after, group->id))
+      lines.push_back(fmt::format("note: films no longer move \"{}\" by the keyframes of \"{}\", which it has left",
+                                  node->name, group->name));
+  for (const NodePtr& group : moving_groups_of(after, node->id))
+    if (!is_inside(before, node->id, group->id) && find(before, group->id))
+      lines.push_back(
+          fmt::format("note: films move \"{}\" by the keyframes of \"{}\" from now on, which it has entered",
+                      node->name, group->name));
+}
+
+// Notes of what another parent changes although the place in the world stays.
+void add_notes_of_parent(const PlacedNode& before, const PlacedNode& after, std::vector<std::string>& lines) {
+  if (before.visible && !after.visible)
+    lines.push_back(fmt::format("note: \"{}\" is hidden from now on, as the group that it is in", after.node->name));
+  if (!after.node->motion || after.node->motion->place.size() < 2) return;
+  // From the old parent's axes to those of the new one.
+  const Mat3 axes = after.node->to_parent.linear() * before.node->to_parent.linear().inverse();
+  if (!axes.isApprox(axes(0, 0) * Mat3::Identity()))
+    lines.push_back(fmt::format(
+        "note: between its keyframes, \"{}\" may move along another path, because its parent has other axes",
+        after.node->name));
+}
+
 }  // namespace
 
 Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress) {
@@ -140,17 +175,11 @@ Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress
       lines.push_back(fmt::format("note: films still move \"{}\" by its keyframes; set one (key) to move it there too",
                                   placed.node->name));
   }
-  // Nor do they move nodes by the keyframes of groups that these have left.
   for (const PlacedNode& placed : placed_nodes(outcome.scene)) {
-    if (placed.node->object == nullptr || !find(scene, placed.node->id)) continue;
-    for (NodeId up = parent_of(scene, placed.node->id); up != NodeId::none; up = parent_of(scene, up)) {
-      const NodePtr group = find(scene, up);
-      if (!group->motion || group->motion->place.empty() || is_inside(outcome.scene, placed.node->id, up) ||
-          !find(outcome.scene, up))
-        continue;
-      lines.push_back(fmt::format("note: films no longer move \"{}\" by the keyframes of \"{}\", which it has left",
-                                  placed.node->name, group->name));
-    }
+    const auto before = find_placed(scene, placed.node->id);
+    if (before && placed.node->object) add_notes_of_groups(scene, outcome.scene, placed.node, lines);
+    if (before && parent_of(scene, placed.node->id) != parent_of(outcome.scene, placed.node->id))
+      add_notes_of_parent(*before, placed, lines);
   }
   for (const PlacedNode& placed : placed_nodes(outcome.scene))
     if (const NodePtr before = find(scene, placed.node->id)) add_notes_of_bends(*before, *placed.node, lines);
@@ -161,5 +190,20 @@ Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress
 }
 
 nlohmann::json to_json(const Edit& edit) { return edit.type().write(edit.value()); }
+
+nlohmann::json to_json_with_names(const Edit& edit, const Scene& scene) {
+  nlohmann::json line = to_json(edit);
+  const auto name = [&](nlohmann::json& value) {
+    const NodePtr node = value.is_number_unsigned() ? find(scene, NodeId(value.get<std::uint64_t>())) : nullptr;
+    if (node && find(scene, node->name) == node) value = node->name;
+  };
+  for (const FieldInfo& field : edit.type().fields()) {
+    if (!line.contains(field.name)) continue;
+    if (field.type.kind == FieldKind::node) name(line.at(field.name));
+    if (field.type.kind == FieldKind::nodes)
+      for (nlohmann::json& one : line.at(field.name)) name(one);
+  }
+  return line;
+}
 
 }  // namespace rebake

@@ -377,7 +377,7 @@ class Document:
         node: node to place
         position: position of its origin; default: unchanged (scene units)
         rotation: rotation relative to its parent; default: unchanged
-        scale: factors along its own axes; negative values mirror, 0 is refused; default: unchanged
+        scale: factors along its own axes; negative values mirror, 0 is refused; default: unchanged. A mirrored node counts as mirrored along the axis, or all three, that leaves the smallest rotation
         """
     def drop(self, *, node: Node, ground: float | None = None) -> None:
         """Lets a node fall onto the visible surface below it, or onto the scene's ground plane. A node that intersects something is lifted out of it first.
@@ -572,10 +572,11 @@ class Document:
         nodes: nodes to merge, in drawing order
         as_: name of the result; empty: that of the first node
         """
-    def erase(self, *, node: Node | None = None, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, frame: Literal["world", "node", "bounds"] = "world", polygon: Sequence[Sequence[float]] | None = None, brush: Brush | None = None, depth: Sequence[float] | None = None, view: str = "", camera: Camera | None = None, size: Sequence[int] = [800,800], through: bool = False) -> None:
+    def erase(self, *, node: Node | None = None, nodes: Sequence[Node] | None = None, box: Box | None = None, sphere: Sphere | None = None, half_space: HalfSpace | None = None, frame: Literal["world", "node", "bounds"] = "world", polygon: Sequence[Sequence[float]] | None = None, brush: Brush | None = None, depth: Sequence[float] | None = None, view: str = "", camera: Camera | None = None, size: Sequence[int] = [800,800], through: bool = False) -> None:
         """Makes texels inside a region transparent, to cut through triangles; all other texels stay bit for bit.
 
         node: only this node and its children; default: all visible, unlocked objects
+        nodes: only these nodes and their children, in place of node
         box: inside a box
         sphere: inside a sphere; radius as for select
         half_space: in the half-space that the normal points into

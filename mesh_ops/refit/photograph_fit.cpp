@@ -46,13 +46,10 @@ void keep_some(std::vector<Observation>& all, std::size_t texel, std::size_t mos
   all = std::move(kept);
 }
 
-// What all photographs show of the texels of an object, which all `nodes` have.
+// What all photographs show of the texels of an object, which all `nodes` have with the same triangles chosen.
 Observations observed(const BakedObject& object, const std::vector<const FitTarget*>& nodes,
                       const std::vector<ObservingPhotograph>& photographs, std::size_t most) {
-  TriangleSet chosen(object.triangle_count(), 0);
-  for (const FitTarget* node : nodes)
-    for (std::size_t f = 0; f < chosen.size(); ++f) chosen[f] |= node->triangles[f];
-  Observations result{observed_texels(object, chosen), {}};
+  Observations result{observed_texels(object, nodes.front()->triangles), {}};
   result.of_texel.resize(result.texels.size());
   std::vector<Mat3> turns;
   for (const FitTarget* node : nodes) turns.push_back(orthogonal_factor(node->placed.to_world.linear()).transpose());
@@ -354,22 +351,28 @@ FitOfPhotographs fit_to_photographs(const std::vector<FitTarget>& targets, const
     observing.emplace_back(photographs[k], occluders, box.diagonal().norm() + box.center().norm(),
                            largest_pixel * box.diagonal().norm());
   }
-  std::map<const BakedObject*, std::vector<const FitTarget*>> by_object;
-  std::vector<const BakedObject*> order;
+  // Targets that share an object and its chosen triangles share the result.
+  std::vector<std::vector<const FitTarget*>> groups;
   for (const FitTarget& target : targets) {
-    const BakedObject* object = target.placed.node->object.get();
-    if (by_object[object].empty()) order.push_back(object);
-    by_object[object].push_back(&target);
+    const auto same = [&](const std::vector<const FitTarget*>& group) {
+      return group.front()->placed.node->object == target.placed.node->object &&
+             group.front()->triangles == target.triangles;
+    };
+    const auto found = std::find_if(groups.begin(), groups.end(), same);
+    if (found == groups.end())
+      groups.push_back({&target});
+    else
+      found->push_back(&target);
   }
   FitOfPhotographs result;
   ErrorSum before, after;
-  for (const BakedObject* const present : order) {
+  for (const std::vector<const FitTarget*>& group : groups) {
     progress.at("finding texels in the photographs", 0);
     // Objects without view dependence get the axes of most MobileNeRF folders.
-    BakedObject with_axes = *present;
-    if (present->decoder->rule == ColorRule::diffuse) with_axes.axes = Axes::y_up;
+    BakedObject with_axes = *group.front()->placed.node->object;
+    if (with_axes.decoder->rule == ColorRule::diffuse) with_axes.axes = Axes::y_up;
     const BakedObject* const object = &with_axes;
-    const Observations observations = observed(*object, by_object[present], observing, options.observations);
+    const Observations observations = observed(*object, group, observing, options.observations);
     std::size_t seen = 0;
     for (std::size_t t = 0; t < observations.texels.size(); ++t)
       if (observations.texels[t].chosen) ++(observations.of_texel[t].empty() ? result.unseen : seen);
@@ -383,7 +386,7 @@ FitOfPhotographs fit_to_photographs(const std::vector<FitTarget>& targets, const
     before.squares += own.squares;
     after.squares += fitted_error.squares;
     before.count += own.count;
-    result.objects[present] = fitted;
+    for (const FitTarget* target : group) result.objects[target->placed.node->id] = fitted;
   }
   if (before.count > 0) {
     result.before = std::sqrt(before.squares / static_cast<double>(before.count));

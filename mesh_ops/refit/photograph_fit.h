@@ -31,8 +31,8 @@ struct FitOfPhotographsOptions {
 };
 
 struct FitOfPhotographs {
-  /// The objects that changed, by their present ones.
-  std::map<const BakedObject*, std::shared_ptr<const BakedObject>> objects;
+  /// The objects that changed, by the targets' nodes. Targets with the same object and triangles share one.
+  std::map<NodeId, std::shared_ptr<const BakedObject>> objects;
   std::size_t seen = 0,
               unseen = 0;        ///< texels of the targets that photographs see, and others, which keep their colours
   double before = 0, after = 0;  ///< root mean square errors of display colours over all observations, 0 … 1

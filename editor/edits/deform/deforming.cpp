@@ -239,10 +239,12 @@ std::vector<std::uint32_t> points_of(const CageMove& move, const Cage& cage, boo
     if (taken[v] != 0) result.push_back(v);
   if (move.points.ranges.empty()) {
     const Box box = surface_box(cage);
+    const std::vector<std::uint8_t> used = used_vertices(cage);
     const double unit = shares ? box.diagonal().stableNorm() : 1;
     double least = std::numeric_limits<double>::infinity();
     std::optional<std::uint32_t> nearest;
     for (std::uint32_t v = 0; v < cage.vertices.size(); ++v) {
+      if (used[v] == 0) continue;  // moves nothing
       const Vec3 p = in_region(cage.vertices[v], box, shares);
       if (move.box) {
         const Vec3 room = shares ? rounding_of_shares(box) : Vec3(Vec3::Zero());
@@ -269,10 +271,13 @@ double distance_from_center(const CageMove& move, const Box& box, bool shares, c
 
 std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool shares) {
   std::vector<Vec3> points = cage.vertices;
+  const std::vector<std::uint8_t> used = used_vertices(cage);
   for (const CageMove& move : moves) {
     const std::vector<std::uint32_t> taken = points_of(move, cage, shares);
     Box box;
-    for (const std::uint32_t v : taken) box.extend(points[v]);
+    for (const std::uint32_t v : taken)
+      if (used[v] != 0) box.extend(points[v]);
+    if (box.isEmpty()) box.extend(points[taken.front()]);
     const Vec3 pivot = move.pivot.value_or(box.center());
     const Mat3 linear = move.rotate.matrix() * move.scale.value.asDiagonal();
     for (const std::uint32_t v : taken) {

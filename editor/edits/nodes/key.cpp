@@ -59,7 +59,7 @@ Affine placed_by(const Key& edit, const Node& node) {
   place.position = edit.position;
   place.rotation = edit.rotation;
   place.scale = edit.scale;
-  return apply(alone, place).roots.front()->to_parent;
+  return apply(alone, place).scene.roots.front()->to_parent;
 }
 
 // The region and the axis of a bend, from the fields of the edit.
@@ -129,6 +129,7 @@ Outcome apply(const Scene& scene, const Key& edit) {
       refuse_missing(remove_key(motion.place, edit.time));
     else
       set_key(motion.place, {edit.time, placed_by(edit, *placed.node), edit.interpolation});
+    if (!edit.remove) report.lines = locked_inside(scene, edit.node->id);
     report_count(report, motion.place.size(), fmt::format("the place of \"{}\"", placed.node->name));
   } else {
     if (!std::isfinite(*edit.degrees)) throw FieldError("degrees", "must be finite");

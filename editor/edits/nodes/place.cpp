@@ -5,12 +5,27 @@
 
 namespace rebake {
 
+namespace {
+
+// The rotation of a mirrored transform, after the reflection along x, y, z or all three that leaves the smallest one.
+Mat3 proper_rotation(const Mat3& orthogonal) {
+  if (orthogonal.determinant() > 0) return orthogonal;
+  Mat3 least = -orthogonal;
+  for (const int axis : {2, 1, 0}) {
+    Mat3 turn = orthogonal;
+    turn.col(axis) = -turn.col(axis);
+    constexpr double rounding = 1e-12;
+    if (turn.trace() > least.trace() - rounding) least = turn;
+  }
+  return least;
+}
+
+}  // namespace
+
 Placement placement_of(const Affine& to_parent) {
   Placement result;
   result.position = to_parent.translation();
-  Mat3 turn = orthogonal_factor(to_parent.linear());
-  // A mirrored transform is a reflection along x followed by a rotation.
-  if (turn.determinant() < 0) turn.col(0) = -turn.col(0);
+  const Mat3 turn = proper_rotation(orthogonal_factor(to_parent.linear()));
   const Mat3 stretch = turn.transpose() * to_parent.linear();
   result.rotation = turn;
   result.scale = stretch.diagonal();
@@ -22,7 +37,7 @@ Placement placement_of(const Affine& to_parent) {
   return result;
 }
 
-Scene apply(const Scene& scene, const Place& edit) {
+Outcome apply(const Scene& scene, const Place& edit) {
   if (!edit.position && !edit.rotation && !edit.scale)
     throw FieldError("position", "at least one of position, rotation and scale must be given");
   const PlacedNode placed = editable_with_children(scene, edit.node.id);
@@ -38,9 +53,12 @@ Scene apply(const Scene& scene, const Place& edit) {
   }
   if (edit.position) to_parent.translation() = *edit.position;
   if (!to_parent.matrix().allFinite()) throw EditError("the resulting transform is not finite");
-  const Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
+  Scene result = with_changed(scene, edit.node.id, [&](Node& node) { node.to_parent = to_parent; });
   check_subtree(result, edit.node.id);
-  return result;
+  Report report;
+  if (edit.scale && (edit.scale->value.array() < 0).count() == 2)
+    report.lines.emplace_back("note: two negative factors are half a turn, which belongs to the rotation from now on");
+  return {std::move(result), std::move(report)};
 }
 
 REBAKE_DESCRIBE_EDIT(
@@ -49,7 +67,9 @@ REBAKE_DESCRIBE_EDIT(
       visit("position", edit.position, Need::optional, "position of its origin; default: unchanged", Unit::length);
       visit("rotation", edit.rotation, Need::optional, "rotation relative to its parent; default: unchanged");
       visit("scale", edit.scale, Need::optional,
-            "factors along its own axes; negative values mirror, 0 is refused; default: unchanged");
+            "factors along its own axes; negative values mirror, 0 is refused; default: unchanged. A mirrored node "
+            "counts as "
+            "mirrored along the axis, or all three, that leaves the smallest rotation");
     })
 
 }  // namespace rebake

@@ -9,7 +9,7 @@ namespace rebake {
 struct Placement {
   Vec3 position{0, 0, 0};
   Mat3 rotation = Mat3::Identity();  ///< proper rotation, det 1
-  Vec3 scale{1, 1, 1};               ///< one factor is negative if the node is mirrored
+  Vec3 scale{1, 1, 1};               ///< one or three factors are negative if the node is mirrored
   Mat3 shear = Mat3::Identity();     ///< unit diagonal
   bool sheared = false;              ///< the shear is above rounding error
 };
@@ -29,6 +29,6 @@ struct Place {
 template <>
 const EditType& edit_type<Place>();
 
-Scene apply(const Scene& scene, const Place& edit);
+Outcome apply(const Scene& scene, const Place& edit);
 
 }  // namespace rebake

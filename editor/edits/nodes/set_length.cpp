@@ -17,12 +17,14 @@ Outcome apply(const Scene& scene, const SetLength& edit) {
   const double factor = edit.length / before;
   if (!std::isfinite(factor) || factor == 0) throw FieldError("length", "is too far from the present length");
   Scene result = scene;
+  Report report;
   for (const NodePtr& root : scene.roots) {
     if (root->locked)
       throw EditError(fmt::format("\"{}\" is locked; unlock it first, because the whole scene is scaled", root->name));
     result = with_changed(result, root->id,
                           [&](Node& node) { move_in_parent(node, Affine(Eigen::UniformScaling<double>(factor))); });
     check_subtree(result, root->id);
+    for (std::string& line : locked_inside(scene, root->id)) report.lines.push_back(std::move(line));
   }
   const auto scale = [&](Camera& camera) {
     camera.eye *= factor;
@@ -34,8 +36,9 @@ Outcome apply(const Scene& scene, const SetLength& edit) {
   for (auto& [name, camera] : result.views) scale(camera);
   for (auto& key : result.camera_keys) scale(key.value);
   result.ground.height *= factor;
-  return {std::move(result),
-          {{fmt::format("{:.6g} became {:.6g}; the scene is scaled by {:.6g}", before, edit.length, factor)}}};
+  report.lines.push_back(
+      fmt::format("{:.6g} became {:.6g}; the scene is scaled by {:.6g}", before, edit.length, factor));
+  return {std::move(result), std::move(report)};
 }
 
 std::string whole_title(const SetLength& /*edit*/) { return "Set a length"; }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "editor/edits/describe_edit.h"
 #include "editor/edits/scene_change.h"
 
@@ -32,18 +34,32 @@ Outcome erased(const Scene& scene, const std::vector<PlacedNode>& targets,
   return {std::move(result), {{fmt::format("{} texels cleared, {} opaque ones left", texels, left)}}};
 }
 
+std::vector<PlacedNode> targets_of(const Scene& scene, const Erase& edit) {
+  if (edit.nodes.empty()) return selectable(scene, edit.node);
+  if (edit.node) throw FieldError("nodes", "cannot be combined with node");
+  std::vector<PlacedNode> targets;
+  for (const NodeRef& node : edit.nodes)
+    for (PlacedNode& placed : selectable(scene, node))
+      if (std::none_of(targets.begin(), targets.end(),
+                       [&](const PlacedNode& other) { return other.node->id == placed.node->id; }))
+        targets.push_back(std::move(placed));
+  return targets;
+}
+
 }  // namespace
 
 Outcome apply(const Scene& scene, const Erase& edit) {
-  const std::vector<PlacedNode> targets = selectable(scene, edit.node);
+  const std::vector<PlacedNode> targets = targets_of(scene, edit);
   const bool in_picture = edit.picture.polygon || edit.picture.brush || edit.picture.depth;
   const int ways =
       int{edit.box.has_value()} + int{edit.sphere.has_value()} + int{edit.half_space.has_value()} + int{in_picture};
   if (ways != 1) throw FieldError("box", "exactly one of box, sphere, half_space and a picture region must be given");
   if (in_picture) {
     const PictureRegion region(scene, edit.picture, targets);
-    const std::optional<SceneRays> rays =
-        edit.through ? std::nullopt : std::optional(rays_through(visible_objects(scene)));
+    std::vector<PlacedNode> occluders = visible_objects(scene);
+    for (const PlacedNode& target : targets)
+      if (!target.visible) occluders.push_back(target);
+    const std::optional<SceneRays> rays = edit.through ? std::nullopt : std::optional(rays_through(occluders));
     return erased(scene, targets, [&](const PlacedNode& placed) {
       const auto inside = [&region, &rays, to_world = placed.to_world](const Vec3& p) {
         const Vec3 world = to_world * p;
@@ -75,6 +91,7 @@ REBAKE_DESCRIBE_EDIT(
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
             "only this node and its children; default: all visible, unlocked objects");
+      visit("nodes", edit.nodes, Need::optional, "only these nodes and their children, in place of node");
       visit("box", edit.box, Need::optional, "inside a box");
       visit("sphere", edit.sphere, Need::optional, "inside a sphere; radius as for select");
       visit("half_space", edit.half_space, Need::optional, "in the half-space that the normal points into");

@@ -9,6 +9,7 @@ namespace rebake {
 struct Erase {
   static constexpr const char* op = "erase";
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
+  std::vector<NodeRef> nodes;   ///< several nodes, in place of `node`
   std::optional<BoxRegion> box;
   std::optional<SphereRegion> sphere;
   std::optional<HalfSpaceRegion> half_space;

@@ -123,7 +123,7 @@ Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
   if (fit.seen == 0) throw EditError("the photographs see none of these texels; do the cameras belong to this scene?");
   Scene result = scene;
   for (const FitTarget& target : targets)
-    if (const auto changed = fit.objects.find(target.placed.node->object.get()); changed != fit.objects.end())
+    if (const auto changed = fit.objects.find(target.placed.node->id); changed != fit.objects.end())
       result = with_changed(result, target.placed.node->id, [&](Node& node) { node.object = changed->second; });
   report.lines.push_back(fmt::format(
       "fitted {} texels to {} photographs: root mean square error {:.1f} of 255 before, {:.1f} after{}", fit.seen,

@@ -1,11 +1,28 @@
 #include "editor/edits/shape/separate.h"
 
+#include <fmt/format.h>
+
 #include "editor/edits/describe_edit.h"
 #include "editor/edits/scene_change.h"
 
 namespace rebake {
 
-Scene apply(const Scene& scene, const Separate& edit) {
+namespace {
+
+// Notes of keyframed bends with a soft border, which ends where the parts are cut.
+std::vector<std::string> notes_of_borders(const Node& node) {
+  std::vector<std::string> notes;
+  if (!node.motion) return notes;
+  for (const auto& [name, bend] : node.motion->bends)
+    if (bend.falloff > 0 && (bend.box || !bend.selection.empty()))
+      notes.push_back(
+          fmt::format("note: films bend both parts by \"{}\"; its soft border ends where they were cut", name));
+  return notes;
+}
+
+}  // namespace
+
+Outcome apply(const Scene& scene, const Separate& edit) {
   const PlacedNode placed = object_with_selection(scene, edit.node);
   if (!edit.as.empty() && find(scene, edit.as) != nullptr)
     throw FieldError("as", "\"" + edit.as + "\" is already the name of another node; choose another name");
@@ -21,7 +38,7 @@ Scene apply(const Scene& scene, const Separate& edit) {
   const Scene changed =
       with_changed(scene, placed.node->id, [&](Node& node) { keep_triangles(node, selection, false); });
   const auto [parent, index] = place_of(changed, placed.node->id);
-  return with_added(changed, std::move(part), parent, index + 1);
+  return {with_added(changed, std::move(part), parent, index + 1), {notes_of_borders(*placed.node)}};
 }
 
 std::string change_title(const Separate&, const SceneChange& change, const Separate*) {

@@ -15,7 +15,7 @@ struct Separate {
 template <>
 const EditType& edit_type<Separate>();
 
-Scene apply(const Scene& scene, const Separate& edit);
+Outcome apply(const Scene& scene, const Separate& edit);
 /// See EditType::change_title.
 std::string change_title(const Separate& edit, const SceneChange& change, const Separate* replaced);
 

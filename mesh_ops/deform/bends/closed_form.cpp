@@ -72,7 +72,7 @@ Deformed deform(const ClosedForm& form, const Vec3& point) {
       break;
     }
     case ClosedForm::Kind::bend: {
-      if (share == 0) break;
+      if (share == 0 && slope == 0) break;
       // The axis becomes an arc of the same length: (1 − cos a)/κ sideways and sin a / κ along the axis.
       const double kappa = form.radians / length, arc = inside - form.from;
       const double aside = kappa != 0 ? -c1 / kappa : 0, shortened = kappa != 0 ? s / kappa - arc : 0;

@@ -66,7 +66,7 @@ struct Position {
 // segment moves rigidly with it, even after later segments have rotated it.
 Deformed deform_after(const ClosedForm& form, const Position& at, const Deformed& so_far) {
   const double length = form.to - form.from, inside = at.inside, share = (inside - form.from) / length;
-  if (share == 0) return so_far;
+  if (share == 0 && !at.within) return so_far;
   const Mat3 frame = frame_of(form);
   const Vec3 p = frame * (so_far.point - form.origin);
   const double angle = form.radians * share, rate = form.radians / length, s = elementary::sine_cosine(angle).sine,
@@ -89,7 +89,7 @@ Deformed deform_after(const ClosedForm& form, const Position& at, const Deformed
   }
   Mat3 jacobian = so_far.jacobian + frame.transpose() * j * frame * so_far.jacobian;
   if (at.within) jacobian += frame.transpose() * by_inside * frame.row(2);
-  return {so_far.point + frame.transpose() * motion, jacobian};
+  return {share == 0 ? so_far.point : Vec3(so_far.point + frame.transpose() * motion), jacobian};
 }
 
 // A segment whose points at `inside` rotate about `turn` by an angle proportional to it, so that the segment becomes a
@@ -97,7 +97,7 @@ Deformed deform_after(const ClosedForm& form, const Position& at, const Deformed
 Deformed deform_after_helix(const CurvedForm::Piece& piece, const Position& at, const Deformed& so_far) {
   const ClosedForm& form = piece.form;
   const double passed = at.inside - form.from, rate = form.radians / (form.to - form.from);
-  if (passed == 0 || rate == 0) return so_far;
+  if ((passed == 0 && !at.within) || rate == 0) return so_far;
   const Vec3 &turn = piece.turn, along = form.axis.stableNormalized(), sideways = turn.cross(along);
   const Vec3 across = sideways.cross(turn);  // the part of `along` that is perpendicular to `turn`
   const double angle = rate * passed, sine = elementary::sine_cosine(angle).sine,
@@ -113,7 +113,7 @@ Deformed deform_after_helix(const CurvedForm::Piece& piece, const Position& at, 
     const Vec3 rotated = from_segment + rotation_motion(from_segment);
     jacobian += rate * turn.cross(rotated) * along.transpose();
   }
-  return {so_far.point + motion, jacobian};
+  return {passed == 0 ? so_far.point : Vec3(so_far.point + motion), jacobian};
 }
 
 // The segments on which a point is projected: those around the nearest one, up to the first that points back. Beyond

@@ -85,7 +85,7 @@ TEST_F(PhotographFit, OnlyTexelsOfChosenTrianglesChange) {
   const Scene reset = scene_of(with_texels(object(), grey));
   const FitOfPhotographs fitted = fit(reset, &some);
   ASSERT_EQ(fitted.objects.size(), 1U);
-  const BakedObject &before = *fitted.objects.begin()->first, &after = *fitted.objects.begin()->second;
+  const BakedObject &before = *reset.roots.front()->object, &after = *fitted.objects.begin()->second;
   std::size_t changed = 0;
   for (const ObservedTexel& texel : observed_texels(before, some)) {
     const TexelReader was(*before.sets[texel.set].texels), is(*after.sets[texel.set].texels);

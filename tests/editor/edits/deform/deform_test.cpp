@@ -217,6 +217,31 @@ TEST_F(DeformScript, DuplicatePointsMoveOnceAndGrowthIsReported) {
   EXPECT_NE(said.find("the moved cage intersects itself ("), std::string::npos) << said;
 }
 
+// Vertices of a cage that no face uses move nothing, so they are not taken and shift no pivot.
+TEST_F(DeformScript, RegionsOfCagesTakeOnlyVerticesOfFaces) {
+  const std::string box = "v -2 -2 -2\nv 4 -2 -2\nv -2 4 -2\nv -2 -2 4\n",
+                    faces = "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  write_text(folder_.path() / "plain.obj", box + faces);
+  write_text(folder_.path() / "loose.obj", box + "v 0 0 9\n" + faces);
+  const auto line = [](const std::string& cage, const std::string& move) {
+    return R"({"op": "cage", "node": "ball", "mesh": "{here}/)" + cage + R"(.obj", "moves": [{)" + move + "}]}";
+  };
+  const std::string turn =
+      R"("box": {"min": [-9, -9, -9], "max": [9, 9, 9]}, "rotate": {"axis": [0, 0, 1], "degrees": 20})";
+  std::vector<std::vector<Vec3>> turned;
+  for (const char* cage : {"plain", "loose"}) {
+    run(line(cage, turn));
+    turned.push_back(ball().sets[0].soup.positions());
+    run(R"({"op": "undo"})");
+  }
+  EXPECT_EQ(turned[0], turned[1]);
+  const std::string near_loose = R"("sphere": {"center": [0, 0, 9], "radius": 0.5}, "translate": [0, 0, 1])";
+  expect_error(line("loose", near_loose), "contains no cage vertex");
+  const auto before = ball().sets[0].soup.positions();
+  run(line("loose", near_loose + R"(, "nearest": true)"));
+  EXPECT_NE(ball().sets[0].soup.positions(), before) << "the nearest vertex of a face";
+}
+
 TEST_F(DeformScript, JournalStoresTheCageMesh) {
   write_text(folder_.path() / "cage.obj",
              "v -2 -2 -2\nv 4 -2 -2\nv -2 4 -2\nv -2 -2 4\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");

@@ -79,6 +79,28 @@ TEST_F(NodeEdits, PlaceSetsTransformWithoutShear) {
   expect_error(R"({"op": "place", "node": "ball", "scale": 0})", "must not be 0");
 }
 
+// What `place` does not set stays, also of mirrored nodes.
+TEST_F(NodeEdits, PlaceKeepsTheScaleOrRotationOfMirroredNodes) {
+  run(import);
+  const auto linear = [&] { return Mat3(node("ball")->to_parent.linear()); };
+  for (const char* mirror : {"[1, 1, -1]", "[1, -1, 1]", "[-1, 1, 1]", "-1", "[2, -3, 1]"}) {
+    run(fmt::format(R"({{"op": "place", "node": "ball", "scale": {}}}
+{{"op": "place", "node": "ball", "scale": [1, 1, 1]}})",
+                    mirror));
+    EXPECT_LT((linear() - Mat3::Identity()).norm(), 1e-14) << mirror;
+  }
+  for (const Vec3& mirror : {Vec3(1, 1, -1), Vec3(1, -1, 1), Vec3(-1, 1, 1)})
+    for (const double degrees : {30.0, -80.0, 85.0}) {
+      run(fmt::format(R"({{"op": "place", "node": "ball", "scale": [{}, {}, {}], "rotation": [1, 0, 0, 0]}}
+{{"op": "place", "node": "ball", "rotation": {{"axis": [0.2, 1, 0.1], "degrees": {}}}}})",
+                      mirror.x(), mirror.y(), mirror.z(), degrees));
+      const Mat3 turn = Eigen::AngleAxisd(degrees * EIGEN_PI / 180, Vec3(0.2, 1, 0.1).normalized()).toRotationMatrix();
+      EXPECT_LT((linear() - turn * Mat3(mirror.asDiagonal())).norm(), 1e-14) << mirror << " " << degrees;
+      run(R"({"op": "place", "node": "ball", "rotation": [1, 0, 0, 0]})");
+      EXPECT_LT((linear() - Mat3(mirror.asDiagonal())).norm(), 1e-14) << mirror << " " << degrees;
+    }
+}
+
 TEST_F(NodeEdits, DropsOntoObjectsAndGround) {
   // Spheres of radius 1 with holes collide only where they are opaque.
   run(import + R"({"op": "duplicate", "node": "ball", "as": "upper"}
@@ -281,6 +303,32 @@ TEST_F(NodeEdits, RejectsOverflowLockedChildrenAndDeepNesting) {
   std::string nested = "{\"op\": ";
   for (int i = 0; i < 5000; ++i) nested += "[";
   expect_error(nested, "nested deeper than 32 levels");
+}
+
+// What else a new parent or a lock changes is said.
+TEST_F(NodeEdits, NotesSayWhatMovesHidesOrStaysLocked) {
+  std::string said;
+  session.say = session.report = [&](const std::string& line) { said += line + "\n"; };
+  const auto says = [&](const std::string& lines, const std::string& what) {
+    said.clear();
+    run(lines);
+    EXPECT_NE(said.find(what), std::string::npos) << lines << "\n" << said;
+  };
+  run(import + R"({"op": "duplicate", "node": "ball", "as": "second"}
+{"op": "group", "nodes": ["second"], "as": "g"}
+{"op": "transform", "node": "g", "rotate": {"axis": [0, 0, 1], "degrees": 45}}
+{"op": "key", "time": 0, "node": "g"}
+{"op": "key", "time": 1, "node": "g", "position": [1, 0, 0]}
+{"op": "key", "time": 0, "node": "ball"}
+{"op": "key", "time": 1, "node": "ball", "position": [0, 1, 0]})");
+  says(R"({"op": "reorder", "node": "ball", "index": 0, "parent": "g"})", "by the keyframes of \"g\" from now on");
+  EXPECT_NE(said.find("may move along another path"), std::string::npos) << said;
+  says(R"({"op": "reorder", "node": "ball", "index": 0, "top": true})", "no longer move \"ball\"");
+  run(R"({"op": "hide", "node": "g"})");
+  says(R"({"op": "reorder", "node": "ball", "index": 0, "parent": "g"})", "\"ball\" is hidden from now on");
+  run(R"({"op": "lock", "node": "ball"})");
+  says(R"({"op": "set_length", "points": [[0, 0, 0], [1, 0, 0]], "length": 2})", "moves \"ball\" too, which is locked");
+  says(R"({"op": "key", "time": 2, "node": "g", "position": [2, 0, 0]})", "moves \"ball\" too, which is locked");
 }
 
 TEST_F(NodeEdits, LeavingAHiddenGroupStaysHidden) {

@@ -213,6 +213,31 @@ TEST(SelectEdit, SpheresInTheBoundsOfAFlatObjectDoNotDependOnItsSize) {
   }
 }
 
+// One edit for several nodes: texels that it uncovers stay. A hidden node that is named occludes itself.
+TEST(SelectEdit, ErasingInAPictureClearsOnlyWhatWasVisible) {
+  Scene scene = scene_of(made_object({.radius = 2, .holes = false}), "front");
+  Node behind;
+  behind.name = "behind";
+  behind.object = made_object({.holes = false});
+  behind.to_parent.translation() = Vec3(0, 0, -6);
+  scene = with_added(scene, behind, NodeId::none, 9);
+  nlohmann::json line{{"op", "erase"},
+                      {"nodes", {"front", "behind"}},
+                      {"brush", {{"points", {{32, 32}}}, {"radius", 6}}},
+                      {"size", {64, 64}},
+                      {"camera", {{"eye", {0, 0, 8}}, {"target", {0, 0, 0}}}}};
+  const auto texels = [](const Scene& of, std::size_t node) { return of.roots[node]->object->opaque_texel_count(); };
+  const Scene erased = apply(scene, read_edit(line, scene)).scene;
+  EXPECT_LT(texels(erased, 0), texels(scene, 0));
+  EXPECT_EQ(texels(erased, 1), texels(scene, 1));
+  line["node"] = "front";
+  EXPECT_THROW(apply(scene, read_edit(line, scene)), FieldError) << "node and nodes";
+  line.erase("nodes");
+  Scene hidden = with_changed(scene, scene.roots[0]->id, [](Node& node) { node.visible = false; });
+  const auto cleared = [&](const Scene& of) { return texels(of, 0) - texels(apply(of, read_edit(line, of)).scene, 0); };
+  EXPECT_EQ(cleared(hidden), cleared(scene)) << "not its back";
+}
+
 // Triangles in front of the near plane are not drawn and must not occlude others for erase.
 TEST(SelectEdit, ErasingSeesThroughWhatTheNearPlaneCuts) {
   Scene scene = scene_of(made_object({.holes = false}), "ball");

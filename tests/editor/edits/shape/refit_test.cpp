@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/refit/texel_observations.h"
 #include "render/image.h"
 #include "tests/support/made_scenes.h"
 #include "tests/support/script_fixture.h"
@@ -54,6 +55,29 @@ TEST_F(RefitTest, ProjectsNoticeOtherPhotographs) {
   EXPECT_THROW(Document::open(at("p.rebake"), {}, {}), Error);
   // Outputs do not replace photographs that undo and projects read again.
   expect_error(R"({"op": "render", "out": "{here}/cap/b.png", "width": 8, "height": 8})", "a file that this run reads");
+}
+
+TEST_F(RefitTest, NodesWithOneObjectChangeOnlyTheirOwnSelection) {
+  run(R"({"op": "duplicate", "node": "ball", "as": "copy"}
+{"op": "select", "node": "ball", "half_space": {"point": [0, 0, 0], "normal": [1, 0, 0]}}
+{"op": "select", "node": "copy", "half_space": {"point": [0, 0, 0], "normal": [-1, 0, 0]}})");
+  const auto before = node("ball")->object;
+  ASSERT_EQ(node("copy")->object, before);
+  ASSERT_GT(selected("ball"), 0U);
+  run(refit_.substr(0, refit_.size() - 1) + R"(, "selection": true})");
+  // Texels outside a node's own selection are those of before.
+  for (const char* name : {"ball", "copy"}) {
+    const BakedObject& after = *node(name)->object;
+    std::size_t changed = 0;
+    for (const ObservedTexel& texel : observed_texels(*before, *node(name)->selection)) {
+      const TexelReader was(*before->sets[texel.set].texels), is(*after.sets[texel.set].texels);
+      const int x = static_cast<int>(texel.x), y = static_cast<int>(texel.y);
+      const bool differs = !(was.at(x, y) == is.at(x, y));
+      changed += differs ? 1 : 0;
+      ASSERT_TRUE(texel.chosen || !differs) << name;
+    }
+    EXPECT_GT(changed, 50U) << name;
+  }
 }
 
 TEST_F(RefitTest, SaysWhatIsWrong) {

@@ -42,6 +42,31 @@ TEST(CurvedForm, AlongAStraightLineMatchesTheClosedForm) {
     }
 }
 
+// At the limits and at the joints of a spine, where the share of a piece is 0, rotations depend on the point too.
+TEST(CurvedForm, AtLimitsAndJointsItMatchesTheClosedForm) {
+  for (const ClosedForm::Kind kind : {ClosedForm::Kind::bend, ClosedForm::Kind::twist, ClosedForm::Kind::stretch}) {
+    ClosedForm form;
+    form.kind = kind;
+    form.origin = {0, 0, 0};
+    form.axis = {0, 1, 0};
+    form.direction = {1, 0, 0};
+    form.from = 0;
+    form.to = 2;
+    form.factor = 1.5;
+    form.radians = 6;
+    const auto curved = along_curve(form, {{0, 0, 0}, {0, 1, 0}, {0, 1.5, 0}, {0, 2, 0}});
+    for (const double along : {0.0, 1.0, 1.5, 2.0})
+      for (const Vec3& aside : {Vec3(0.5, 0, 0), Vec3(0, 0, -0.3), Vec3(-0.2, 0, 0.4)}) {
+        const Vec3 point = aside + along * Vec3::UnitY();
+        const Deformed want = deform(form, point), got = deform(curved, point);
+        EXPECT_LE((got.point - want.point).norm(), 1e-14) << along;
+        EXPECT_LE((got.jacobian - want.jacobian).norm(), 1e-13) << along << "\n"
+                                                                << got.jacobian << "\n"
+                                                                << want.jacobian;
+      }
+  }
+}
+
 TEST(CurvedForm, PreservesLengthAndMovesTheRestRigidly) {
   std::vector<Vec3> curve;
   for (int k = 0; k <= 12; ++k) curve.emplace_back(std::sin(0.1 * k), 0.12 * k, 0.3 * std::cos(0.15 * k));
