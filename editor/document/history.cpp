@@ -60,6 +60,13 @@ std::vector<Edit> History::edits() const {
   return result;
 }
 
+std::vector<std::size_t> History::edits_before() const {
+  std::vector<std::size_t> result;
+  for (std::size_t k = position_; k > 0; k = steps_[k].base) result.push_back(steps_[k].base);
+  std::reverse(result.begin(), result.end());
+  return result;
+}
+
 std::vector<History::Entry> History::entries() const {
   std::vector<Entry> result;
   for (std::size_t k = 1; k < steps_.size(); ++k)

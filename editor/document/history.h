@@ -22,6 +22,8 @@ class History {
   const Scene& now() const { return *steps_[position_].scene; }
   /// Edits that lead from the start to now(), without those that a later edit replaced.
   std::vector<Edit> edits() const;
+  /// Of each of edits(): the number of edits before it, including replaced ones, for scene_at().
+  std::vector<std::size_t> edits_before() const;
   /// One edit of the history.
   struct Entry {
     Edit edit;

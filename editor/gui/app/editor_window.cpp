@@ -205,11 +205,7 @@ class EditorWindow {
       return;
     const Command* command = command_for(press, editor_.settings);
     if (command == nullptr || (press.repeated && !command->repeats)) return;
-    if (command->enabled(editor_))
-      command->run(editor_);
-    else
-      editor_.messages.say(std::string(command->title) +
-                           ": not available now. Open a scene, pick nodes or select triangles first.");
+    run_command(editor_, *command);
   }
 
   // Whether a dialog is open that needs an answer.
@@ -239,7 +235,7 @@ class EditorWindow {
     } else if (viewport().cancel(editor_) || editor_.messages.close_failures()) {
       return;
     } else if (editor_.jobs.worker.busy()) {
-      editor_.jobs.worker.cancel();
+      editor_.cancel_jobs();
     } else if (editor_.tools.kind != ToolKind::pick) {
       editor_.tools.kind = ToolKind::pick;
     } else {

@@ -329,27 +329,29 @@ bool Viewport::draw_wipe(EditorContext& editor, ImDrawList& list, const ImVec2& 
 
 // Writes a requested screenshot, or the next picture of a film.
 void Viewport::write_pictures(EditorContext& editor) {
-  const auto written = [&](const Camera& camera, int width, int height, const std::filesystem::path& path) {
+  const auto written = [&](const Jobs::Rendered& shows, const Camera& camera, int width, int height,
+                           const std::filesystem::path& path) {
     made_.reset();
-    const Scene scene = with_only(editor.scene(), editor.jobs.rendered_nodes);
+    const Scene scene = with_only(shows.scene, shows.nodes);
     const View view{with_clip_planes_for(camera, world_bounds(scene)), width, height, editor.view.samples};
-    const Lighting lighting = editor.view.as_baked ? Lighting{} : lit(editor.scene());
+    const Lighting lighting = editor.view.as_baked ? Lighting{} : lit(shows.scene);
     write_picture(renderer_.render(scene, view, {}, &lighting), path, editor.now->sources);
   };
   try {
     if (const auto shot = std::exchange(editor.jobs.screenshot, std::nullopt)) {
-      written(editor.view.camera, shot->width, shot->height, shot->path);
+      written(shot->shows, editor.view.camera, shot->width, shot->height, shot->path);
       editor.messages.say("Wrote " + shot->path.string());
     }
     if (editor.jobs.film) {
       const std::string said = editor.jobs.film->run_step(
           [&](const Camera& camera, const std::filesystem::path& path) {
-            written(camera, editor.jobs.film->width(), editor.jobs.film->height(), path);
+            written(editor.jobs.film_shows, camera, editor.jobs.film->width(), editor.jobs.film->height(), path);
           },
           editor.now->sources);
       if (!said.empty()) {
         editor.messages.say(said);
         editor.jobs.film.reset();
+        editor.jobs.film_shows = {};
       }
     }
   } catch (const std::exception& error) {
@@ -411,7 +413,9 @@ void Viewport::move_camera(EditorContext& editor, const Pointer& pointer) {
 
 void Viewport::use_tool(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   try {
-    if (!editor.jobs.worker.busy() || !tool(editor).needs_current_scene() || tool(editor).busy())
+    const bool may_start =
+        !editor.has_waiting_commands() && (!editor.jobs.worker.busy() || !tool(editor).needs_current_scene());
+    if (may_start || tool(editor).busy())
       tool(editor).pointer(editor, lens, pointer);
     else if (pointer.pressed && pointer.inside)
       editor.messages.say("A job is still running. Click again when it has finished, or press Esc to cancel it.");

@@ -191,7 +191,7 @@ void WindowLayout::context_menu() {
 void WindowLayout::menu_item(const Command& command) {
   const bool checked = command.checked != nullptr && command.checked(editor_);
   if (ImGui::MenuItem(command.title, command.key_of(editor_.settings).c_str(), checked, command.enabled(editor_)))
-    command.run(editor_);
+    run_command(editor_, command);
   announce::item(command.title);
   if (*command.help != '\0') ui::tip(command.title, "", command.help);
 }
@@ -288,7 +288,7 @@ void WindowLayout::status() {
     ImGui::Text("%s (Esc cancels)", editor_.jobs.film->doing().c_str());
   } else if (editor_.jobs.worker.busy()) {
     const Worker::Status now = editor_.jobs.worker.status();
-    if (ui::quiet_icon(icons::close, "Cancel")) editor_.jobs.worker.cancel();
+    if (ui::quiet_icon(icons::close, "Cancel")) editor_.cancel_jobs();
     ui::tip("Cancel", "Esc");
     ImGui::SameLine();
     ImGui::ProgressBar(static_cast<float>(now.share), {px(160), px(6)}, "");

@@ -28,7 +28,8 @@ Vec3 point_of(const json& value, double otherwise) {
 }
 
 // Draws number fields for a field and writes changes to `object`. `unit`: change of a length per pixel of drag.
-ui::Changed draw_values(const AdjustableField& field, json& object, double unit) {
+// `angles`: those of a rotation during a drag, because a rotation has several.
+ui::Changed draw_values(const AdjustableField& field, json& object, double unit, std::optional<Vec3>& angles) {
   const json held = object.contains(field.field) ? object.at(field.field) : json();
   if (field.kind == Kind::point || field.kind == Kind::factors || field.kind == Kind::rotation) {
     Vec3 value = point_of(held, field.kind == Kind::factors ? 1 : 0);
@@ -40,6 +41,7 @@ ui::Changed draw_values(const AdjustableField& field, json& object, double unit)
       value = euler_degrees(q.toRotationMatrix());
       for (double& angle : value)
         if (std::abs(angle) < 1e-10) angle = 0;
+      if (angles) value = *angles;
     }
     const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
     const double step = field.kind == Kind::point ? unit : field.kind == Kind::rotation ? 1 : 0.01;
@@ -52,6 +54,7 @@ ui::Changed draw_values(const AdjustableField& field, json& object, double unit)
     }
     if (result != ui::Changed::dragged && result != ui::Changed::finished) return result;
     if (field.kind == Kind::rotation) {
+      angles = value;
       const Eigen::Quaterniond q(rotation_of(value));
       object[field.field] = {q.w(), q.x(), q.y(), q.z()};
     } else {
@@ -76,11 +79,11 @@ ui::Changed draw_values(const AdjustableField& field, json& object, double unit)
 }
 
 // Draws a labelled field and writes changes to `object`.
-ui::Changed draw_field(const AdjustableField& field, json& object, double unit) {
+ui::Changed draw_field(const AdjustableField& field, json& object, double unit, std::optional<Vec3>& angles) {
   ui::label(field.label);
   const announce::Part part(field.field);
   ImGui::PushID(field.label);
-  const ui::Changed changed = draw_values(field, object, unit);
+  const ui::Changed changed = draw_values(field, object, unit, angles);
   ImGui::PopID();
   return changed;
 }
@@ -129,9 +132,10 @@ void AdjustPanel::draw(ToolContext& editor, const ImVec2& corner, const ImVec2& 
     const double size =
         std::max(1e-300, world_bounds(now.scene).isEmpty() ? 1 : world_bounds(now.scene).diagonal().norm());
     const double unit = std::pow(10, std::floor(std::log10(size)) - 2);
+    if (!changing_) angles_.reset();
     ImGui::PushID(static_cast<int>(now.steps_done));  // a text box must not outlive its step either
     for (const AdjustableField& field : fields)
-      if (const ui::Changed one = draw_field(field, object_, unit); one != ui::Changed::nothing) changed = one;
+      if (const ui::Changed one = draw_field(field, object_, unit, angles_); one != ui::Changed::nothing) changed = one;
     ImGui::PopID();
   }
   ImGui::End();

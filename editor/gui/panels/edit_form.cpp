@@ -8,6 +8,7 @@
 #include "editor/edits/scene_change.h"
 #include "editor/edits/select/select.h"
 #include "editor/edits/select/select_like.h"
+#include "editor/edits/shape/erase.h"
 #include "editor/edits/shape/separate.h"
 #include "editor/edits/support.h"
 #include "editor/fields/field_info.h"
@@ -56,15 +57,25 @@ void EditForm::begin(const DocumentEditor& editor, const std::string& op) {
   previewed_.clear();
   request_ = 0;
   inputs_ = {};
+  picks_ = {};
+  document_ = editor.now->document;
+  fill_picks(editor);
   for (const FieldInfo& field : type_named(op_)->fields()) {
-    if (field.type.kind == FieldKind::nodes && field.required) {
-      json list = json::array();
-      for (const NodeId id : editor.active_tops()) list.push_back(static_cast<std::uint64_t>(id));
-      inputs_.set(field.name, list);
-    }
     if (field.name == "selection" && editor.selected_triangles() > 0) inputs_.set("selection", true);
     if (field.required && field.type.kind == FieldKind::number) inputs_.set(field.name, 0);
   }
+}
+
+void EditForm::fill_picks(const DocumentEditor& editor) {
+  json list = json::array();
+  for (const NodeId id : editor.active_tops()) list.push_back(static_cast<std::uint64_t>(id));
+  for (const FieldInfo& field : type_named(op_)->fields()) {
+    if (field.type.kind != FieldKind::nodes || !field.required) continue;
+    const json values = inputs_.values();
+    const auto there = values.find(field.name);
+    if (there == values.end() || *there == picks_) inputs_.set(field.name, list);
+  }
+  picks_ = std::move(list);
 }
 
 // One edit per node of the scope if the form has a node field without a choice, otherwise one edit. Throws EditError if
@@ -74,7 +85,8 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
   line["op"] = op_;
   const std::vector<FieldInfo> fields = type_named(op_)->fields();
   const FieldInfo* const node = field_named(fields, "node");
-  if (node == nullptr || node->type.kind != FieldKind::node || line.contains("node")) return {line};
+  if (node == nullptr || node->type.kind != FieldKind::node || line.contains("node") || line.contains("nodes"))
+    return {line};
   // These take the one nearest triangle, or the mean of the selection, of all nodes together.
   if (line.contains("point") || line.contains("connected") || op_ == SelectLike::op) {
     if (editor.active.empty()) return {line};
@@ -109,6 +121,11 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
     for (const NodeId id : editor.active_tops()) result.push_back(with_node(id));
   else
     for (const std::optional<NodeRef>& one : editor.scope(selection)) result.push_back(with_node(one->id));
+  // One edit, which does not erase in one node what it uncovers in another.
+  if (op_ == Erase::op && result.size() > 1) {
+    for (const json& one : result) line["nodes"].push_back(one.at("node"));
+    return {line};
+  }
   // A stored selection need not exist in all of them.
   if (op_ == Select::op && line.contains("saved") && line.at("saved").is_string()) {
     std::vector<json> with_it = result;
@@ -185,11 +202,13 @@ void EditForm::draw(DocumentEditor& editor, DialogState& dialogs, float right) {
     op_.clear();
     return;
   }
-  if (op_ != dialogs.form) {
+  // Nodes of another document have the same numbers.
+  if (op_ != dialogs.form || document_ != editor.now->document) {
     // That of the form before.
     if (request_ != 0 && editor.requested_preview() == request_) editor.drop_preview();
     begin(editor, dialogs.form);
   }
+  fill_picks(editor);
   bool open = true;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   // At the viewport's top right corner, so that it does not cover the outliner, which sets the scope.

@@ -119,8 +119,7 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
   if (editor.dialogs.path != FileDialogPurpose::light_picture)
     (reads(editor.dialogs.path) ? editor.settings.opened_from : editor.settings.written_to) =
         path.parent_path().string();
-  if (makes_film(editor.dialogs.path) || editor.dialogs.path == FileDialogPurpose::screenshot)
-    editor.jobs.rendered_nodes = wanted_nodes(editor);
+  const Jobs::Rendered shows{editor.scene(), wanted_nodes(editor)};
   switch (editor.dialogs.path) {
     case FileDialogPurpose::open:
       if (list_.chosen().size() > 1)
@@ -144,10 +143,11 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       break;
     case FileDialogPurpose::screenshot:
       refuse_replacing_work(path);
-      editor.jobs.screenshot = Jobs::Screenshot{path, width_, height_};
+      editor.jobs.screenshot = Jobs::Screenshot{path, width_, height_, shows};
       break;
     case FileDialogPurpose::turntable:
       editor.jobs.film.emplace(path, width_, height_, turntable(editor.view.camera, pictures_), editor.now->sources);
+      editor.jobs.film_shows = shows;
       break;
     case FileDialogPurpose::camera_path: {
       std::vector<Camera> views;
@@ -155,6 +155,7 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       if (views.size() < 2) throw Error("a camera path needs at least two stored views; store another view first");
       editor.jobs.film.emplace(path, width_, height_, cameras_through(views, static_cast<std::size_t>(pictures_)),
                                editor.now->sources);
+      editor.jobs.film_shows = shows;
       break;
     }
     case FileDialogPurpose::save_script:

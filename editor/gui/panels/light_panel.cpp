@@ -216,6 +216,7 @@ void LightPanel::draw_settings(EditorContext& editor, const SceneLight& light, b
 void LightPanel::draw(EditorContext& editor) {
   const announce::Part part("light");
   const bool on = editor.scene().light != nullptr;
+  if (std::exchange(document_, editor.now->document) != editor.now->document) last_ = {};
   if (on) last_ = *editor.scene().light;
   const SceneLight light = last_;
   const std::shared_ptr<const Lighting> lighting = on ? editor.relighter.latest() : nullptr;

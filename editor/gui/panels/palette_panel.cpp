@@ -108,7 +108,7 @@ void PalettePanel::draw(EditorContext& editor) {
     if (!taken) continue;
     editor.dialogs.palette = false;
     if (entry.command != nullptr)
-      entry.command->run(editor);
+      run_command(editor, *entry.command);
     else if (entry.view != nullptr)
       editor.view.camera = *entry.view;
     else

@@ -87,6 +87,7 @@ class LightPanel {
   std::optional<PictureTexture> ball_;  ///< image of a ball in the light `ball_of_`
   std::shared_ptr<const Light> ball_of_;
   SceneLight last_;               ///< settings when light last followed edits
+  std::uint64_t document_ = 0;    ///< of which document
   Vec3 sun_{0.5, 0.8, 0.45};      ///< edited direction towards the sun
   double budget_ = 1, turn_ = 0;  ///< edited error budget in 1/255, and rotation of the light image in degrees
   LightModelForm model_;
@@ -130,6 +131,7 @@ class AdjustPanel {
   std::optional<Edit> of_;                         ///< edit that the fields were read from
   nlohmann::json object_;                          ///< its fields with changes
   bool changing_ = false;                          ///< a field is being dragged, so the document has the old value
+  std::optional<Vec3> angles_;                     ///< of a rotation that is being dragged, degrees
   bool was_small_ = false, opened_small_ = false;  ///< the viewport is too small for the fields; they are open anyway
 };
 
@@ -162,6 +164,8 @@ class EditForm {
  private:
   /// Resets the form for the edit `op`.
   void begin(const DocumentEditor& editor, const std::string& op);
+  /// Fills required lists of nodes with the picked nodes, if the user has not changed them.
+  void fill_picks(const DocumentEditor& editor);
   /// The edits that the fields describe: one, or one per picked node. Throws EditError.
   std::vector<nlohmann::json> lines(const DocumentEditor& editor) const;
   /// Requests a preview if the fields or the scene have changed.
@@ -173,6 +177,8 @@ class EditForm {
   std::map<std::string, Camera> previewed_with_;  ///< its stored views
   std::size_t request_ = 0;                       ///< number of the preview's request; 0: none was needed
   std::string op_, problem_;                      ///< op of the edit; error message
+  std::uint64_t document_ = 0;                    ///< document that the fields were set for
+  nlohmann::json picks_;                          ///< the picked nodes that a list of nodes was filled with
   FieldInputs inputs_;
 };
 

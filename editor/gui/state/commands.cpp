@@ -236,11 +236,26 @@ void store_view(ToolContext& editor, const std::string& name) {
   });
 }
 
+void run_command(EditorContext& editor, const Command& command) {
+  const auto run = [&editor, &command] {
+    if (command.enabled(editor))
+      command.run(editor);
+    else
+      editor.messages.say(std::string(command.title) +
+                          ": not available now. Open a scene, pick nodes or select triangles first.");
+  };
+  if (command.in_turn)
+    editor.when_at_rest(run);
+  else
+    run();
+}
+
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
       {"File", "Open...", "Ctrl+O", "Ctrl+O", "Opens a scene, a textured mesh or a project.", always,
        ask<FileDialogPurpose::open>},
-      {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_steps, save},
+      {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_steps, save, nullptr,
+       false, true},
       {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", "Saves every step to another file.", has_steps,
        ask<FileDialogPurpose::save_project>},
       {"File", "Save Rebake scene...", "", "", "Writes the current scene to a folder, without its history.", has_scene,
@@ -267,50 +282,56 @@ const std::vector<Command>& command_table() {
       {"File", "Quit", "Ctrl+Q", "Ctrl+Q", "Closes the window. Asks first if there is unsaved work.", always,
        [](EditorContext& editor) { editor.dialogs.quitting = true; }},
       {"Edit", "Undo", "Ctrl+Z", "Ctrl+Z", "Undoes the last step.",
-       [](const EditorContext& editor) { return !editor.now->done.empty(); }, undo, nullptr, true},
+       [](const EditorContext& editor) { return !editor.now->done.empty(); }, undo, nullptr, true, true},
       {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", "Ctrl+Shift+Z", "Redoes the last undone step.",
-       [](const EditorContext& editor) { return !editor.now->undone.empty(); }, redo, nullptr, true},
+       [](const EditorContext& editor) { return !editor.now->undone.empty(); }, redo, nullptr, true, true},
       {"Edit", "Command palette...", "Ctrl+P", "F3 Ctrl+P", "Finds any command or edit by name.", always,
        [](EditorContext& editor) { editor.dialogs.palette = true; }},
       {"Edit", "Delete", "Delete", "X Delete",
-       "Deletes the selected triangles, or the picked nodes if none are selected.", has_either, remove},
+       "Deletes the selected triangles, or the picked nodes if none are selected.", has_either, remove, nullptr, false,
+       true},
       {"Edit", "Delete and fill holes", "Ctrl+Delete", "Ctrl+Delete",
-       "Deletes the selected triangles and closes the holes that they leave.", has_selection, remove_and_fill},
+       "Deletes the selected triangles and closes the holes that they leave.", has_selection, remove_and_fill, nullptr,
+       false, true},
       {"Edit", "Remove picked nodes", "Shift+Delete", "Shift+Delete",
-       "Removes the picked nodes, even if triangles are selected.", has_active, each_active<Remove>},
-      {"Edit", "Duplicate", "Ctrl+D", "Shift+D", "Copies the picked nodes and picks the copies.", has_active,
-       duplicate},
-      {"Edit", "Group", "Ctrl+G", "Ctrl+G", "Puts the picked nodes into a group.", has_active, group},
-      {"Edit", "Separate", "Ctrl+J", "P", "Moves the selected triangles into a new node.", has_selection, separate},
+       "Removes the picked nodes, even if triangles are selected.", has_active, each_active<Remove>, nullptr, false,
+       true},
+      {"Edit", "Duplicate", "Ctrl+D", "Shift+D", "Copies the picked nodes and picks the copies.", has_active, duplicate,
+       nullptr, false, true},
+      {"Edit", "Group", "Ctrl+G", "Ctrl+G", "Puts the picked nodes into a group.", has_active, group, nullptr, false,
+       true},
+      {"Edit", "Separate", "Ctrl+J", "P", "Moves the selected triangles into a new node.", has_selection, separate,
+       nullptr, false, true},
       {"Edit", "Drop to surface", "End", "End",
-       "Drops the picked nodes onto the surface below them or the ground plane.", has_active, drop},
+       "Drops the picked nodes onto the surface below them or the ground plane.", has_active, drop, nullptr, false,
+       true},
       {"Edit", "Ground at lowest point", "", "", "Levels the ground plane and moves it to the lowest visible point.",
-       has_scene, set_ground<&GroundEdit::foot>},
+       has_scene, set_ground<&GroundEdit::foot>, nullptr, false, true},
       {"Edit", "Ground from selection", "", "", "Fits the ground plane to the selected triangles.", has_selection,
-       set_ground<&GroundEdit::selection>},
+       set_ground<&GroundEdit::selection>, nullptr, false, true},
       {"Edit", "Align and distribute...", "", "", "Aligns or distributes the picked nodes along an axis.", has_several,
        align},
       {"Edit", "Refit from photographs...", "", "",
        "Fits the colours of the picked nodes, or of the selected triangles, to photographs.", has_scene, refit},
       {"Edit", "Hide", "H", "H", "Hides the picked nodes. Hidden nodes are not exported.", has_active,
-       each_active<Hide>},
-      {"Edit", "Show all", "Shift+H", "Alt+H", "Shows all hidden nodes.", has_scene, show_all},
+       each_active<Hide>, nullptr, false, true},
+      {"Edit", "Show all", "Shift+H", "Alt+H", "Shows all hidden nodes.", has_scene, show_all, nullptr, false, true},
       {"Edit", "Adjust last step", "F9", "F9", "Shows the fields of the last step.",
        [](const EditorContext& editor) { return !editor.now->done.empty(); },
        [](EditorContext& editor) { editor.settings.adjust_open = !editor.settings.adjust_open; },
        [](const EditorContext& editor) { return editor.settings.adjust_open; }},
       {"Select", "All", "Ctrl+A", "A", "Selects all triangles of the picked nodes, or of the scene if none are picked.",
-       has_scene, [](EditorContext& editor) { select(editor, true, false, false); }},
+       has_scene, [](EditorContext& editor) { select(editor, true, false, false); }, nullptr, false, true},
       {"Select", "None", "Ctrl+Shift+A", "Alt+A", "Clears the selection.", has_scene,
-       [](EditorContext& editor) { select(editor, false, true, false); }},
+       [](EditorContext& editor) { select(editor, false, true, false); }, nullptr, false, true},
       {"Select", "Invert", "Ctrl+I", "Ctrl+I", "Inverts the selection.", has_scene,
-       [](EditorContext& editor) { select(editor, false, false, true); }},
+       [](EditorContext& editor) { select(editor, false, false, true); }, nullptr, false, true},
       {"Select", "Grow", "Ctrl+]", "Ctrl+KP_ADD", "Adds neighbouring triangles to the selection.", has_selection,
-       [](EditorContext& editor) { editor.edit_scope(Grow{}); }},
+       [](EditorContext& editor) { editor.edit_scope(Grow{}); }, nullptr, false, true},
       {"Select", "Shrink", "Ctrl+[", "Ctrl+KP_SUBTRACT", "Removes the outermost triangles from the selection.",
-       has_selection, [](EditorContext& editor) { editor.edit_scope(Shrink{}); }},
+       has_selection, [](EditorContext& editor) { editor.edit_scope(Shrink{}); }, nullptr, false, true},
       {"Select", "Connected", "Ctrl+L", "L", "Selects all triangles connected to the selection.", has_selection,
-       [](EditorContext& editor) { editor.edit_scope(SelectConnected{}); }},
+       [](EditorContext& editor) { editor.edit_scope(SelectConnected{}); }, nullptr, false, true},
       {"Select", "Visible only", "T", "Alt+Z", "Selects only visible triangles. Off: also those behind them.", always,
        [](EditorContext& editor) { editor.tools.visible_only() = !editor.tools.visible_only(); },
        [](const EditorContext& editor) { return editor.tools.visible_only(); }},

@@ -22,6 +22,7 @@ struct Command {
   void (*run)(EditorContext& editor);
   bool (*checked)(const EditorContext& editor) = nullptr;  ///< state of a toggle; null for other commands
   bool repeats = false;                                    ///< runs repeatedly while its key is held
+  bool in_turn = false;  ///< works on picks, selection or history: waits until no job is running
 
   /// Keys in the current keymap.
   const char* keys_of(const Settings& settings) const { return settings.blender_keys ? blender_keys : keys; }
@@ -34,6 +35,9 @@ struct Command {
 
 /// All commands, in menu order.
 const std::vector<Command>& command_table();
+
+/// Runs a command if it is available, otherwise says that it is not; one that works `in_turn` waits for running jobs.
+void run_command(EditorContext& editor, const Command& command);
 
 /// Parses a key with modifiers, e.g. "Ctrl+Shift+A", "[", "KP_1"; nothing if the text is not valid.
 std::optional<KeyPress> parse_key(const std::string& text);

@@ -51,6 +51,7 @@ bool DocumentEditor::take_news() {
     switch (message.kind) {
       case Worker::Message::Kind::failed:
         messages.fail(std::move(message.text));
+        drop_waiting("the job before them failed");
         break;
       case Worker::Message::Kind::reported:
         messages.note(std::move(message.text));
@@ -75,6 +76,7 @@ bool DocumentEditor::take_news() {
   if ((other && preview && preview->of != next->scene.roots) || other_document) drop_preview();
   // Nodes of another document have the same numbers.
   if (other_document) active.clear();
+  if (other_document) drop_waiting("another document was opened");
   std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
   if (made_more) pick_new(placed_nodes(*now->before_last));
   selected_.clear();
@@ -85,6 +87,23 @@ bool DocumentEditor::take_news() {
   return true;
 }
 
+void DocumentEditor::when_at_rest(std::function<void()> command) {
+  if (waiting_.empty() && at_rest_ && !jobs.worker.busy())
+    command();
+  else
+    waiting_.push_back(std::move(command));
+}
+
+void DocumentEditor::drop_waiting(const char* why) {
+  if (!std::exchange(waiting_, {}).empty())
+    messages.say(fmt::format("Commands that waited were dropped, because {}.", why));
+}
+
+void DocumentEditor::cancel_jobs() {
+  jobs.worker.cancel();
+  waiting_.clear();
+}
+
 void DocumentEditor::call_finished() {
   for (const std::function<void()>& then : std::exchange(finished_, {})) {
     try {
@@ -92,6 +111,11 @@ void DocumentEditor::call_finished() {
     } catch (const std::exception& problem) {
       messages.fail(problem.what());
     }
+  }
+  while (!waiting_.empty() && at_rest_ && !jobs.worker.busy()) {
+    const std::function<void()> command = std::move(waiting_.front());
+    waiting_.pop_front();
+    command();
   }
   if (std::optional<Preview> made = previews.take(); made && made->of == scene().roots) preview = std::move(made);
 }
@@ -377,13 +401,17 @@ std::vector<NodeRef> DocumentEditor::selected_nodes_if_picked() const {
 }
 
 bool DocumentEditor::in_scope(const Scene& in, const PlacedNode& placed) const {
-  return placed.node->object && placed.visible && !placed.locked && is_picked(in, placed);
+  return in_scope_of(active, in, placed);
 }
 
-bool DocumentEditor::is_picked(const Scene& in, const PlacedNode& placed) const {
-  bool inside = active.empty() || active.contains(placed.node->id);
-  for (NodeId up = parent_of(in, placed.node->id); up != NodeId::none && !inside; up = parent_of(in, up))
-    inside = active.contains(up);
+bool DocumentEditor::in_scope_of(const std::set<NodeId>& picks, const Scene& in, const PlacedNode& placed) {
+  return placed.node->object && placed.visible && !placed.locked && is_picked(picks, in, placed.node->id);
+}
+
+bool DocumentEditor::is_picked(const std::set<NodeId>& picks, const Scene& in, NodeId node) {
+  bool inside = picks.empty() || picks.contains(node);
+  for (NodeId up = parent_of(in, node); up != NodeId::none && !inside; up = parent_of(in, up))
+    inside = picks.contains(up);
   return inside;
 }
 
@@ -415,7 +443,7 @@ std::string DocumentEditor::selected_words() const {
   for (const PlacedNode& placed : placed_nodes(scene())) {
     const auto found = selected_.find(placed.node->id);
     if (found == selected_.end()) continue;
-    (in_scope(placed) ? here : is_picked(scene(), placed) ? untouchable : elsewhere) += found->second;
+    (in_scope(placed) ? here : is_picked(active, scene(), placed.node->id) ? untouchable : elsewhere) += found->second;
   }
   if (here + untouchable + elsewhere == 0) return "";
   std::string words = fmt::format("{} selected", here);

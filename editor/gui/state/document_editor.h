@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <future>
 #include <map>
@@ -49,6 +50,13 @@ struct DocumentEditor {
   /// The scene that the viewport draws: the preview, if it belongs to the current scene, and `beside`.
   Scene shown() const;
 
+  /// Calls `command` now, or after all running and waiting jobs, which may change picks and selections. It is
+  /// dropped, with a message, if one of them fails or opens another document. Commands keep their order.
+  void when_at_rest(std::function<void()> command);
+  bool has_waiting_commands() const { return !waiting_.empty(); }
+  /// Cancels the running job, and drops the waiting ones and the waiting commands.
+  void cancel_jobs();
+
   /// Whether no job was running or waiting when `now` was fetched, so that it equals the document.
   bool at_rest() const { return at_rest_; }
 
@@ -69,6 +77,8 @@ struct DocumentEditor {
   /// `selected`, only those with selected triangles. If nothing is picked: one empty entry, which stands for all
   /// visible, unlocked nodes.
   std::vector<std::optional<NodeRef>> scope(bool selected = false) const;
+  /// Says that nothing in the scope can be edited, or that nothing is selected there.
+  void say_why_nothing(bool needs_selection);
   /// The nodes of scope() by name, also if nothing is picked; empty if there are none.
   std::set<NodeId> nodes_in_scope(bool selected = false) const;
   /// The nodes with selected triangles in scope() if any node is picked, for edits whose empty list means all.
@@ -76,6 +86,8 @@ struct DocumentEditor {
   /// Whether commands work on a node: with an object, visible, not locked, and in a picked node if any is picked.
   /// `in`: its scene, this one or a preview of it.
   bool in_scope(const Scene& in, const PlacedNode& placed) const;
+  /// The same for other picks, on any thread.
+  static bool in_scope_of(const std::set<NodeId>& picks, const Scene& in, const PlacedNode& placed);
   /// "in kettle", "in 3 picked", "in all".
   std::string scope_words() const;
 
@@ -152,6 +164,8 @@ struct DocumentEditor {
   using Replace = void (Session::*)(const std::vector<Edit>&, const AppliedEdits*);
   void replace_last(Replace how, const std::vector<Edit>& list, std::function<void()> then,
                     std::function<void()> otherwise);
+  /// Drops the waiting commands, and says why if there are any.
+  void drop_waiting(const char* why);
   /// Removes the preview of an ended job; `shown`: previews.requests() at the job's start. Newer requests go on.
   void end_preview(std::size_t shown);
   /// A requested preview: its edits, and their result when computed. The result is null if the edits failed.
@@ -173,12 +187,11 @@ struct DocumentEditor {
   std::optional<PreviewRequest> asked_;  ///< the last requested preview
   bool in_scope(const PlacedNode& placed) const { return in_scope(scene(), placed); }
   /// Whether it is in a picked node, or nothing is picked.
-  bool is_picked(const Scene& in, const PlacedNode& placed) const;
-  /// Says that nothing in the scope can be edited, or that nothing is selected there.
-  void say_why_nothing(bool needs_selection);
+  static bool is_picked(const std::set<NodeId>& picks, const Scene& in, NodeId node);
   std::map<NodeId, std::size_t> selected_;  ///< number of selected triangles per node, without zeros
   bool at_rest_ = false;
   std::vector<std::function<void()>> finished_;  ///< callbacks of ended jobs
+  std::deque<std::function<void()>> waiting_;    ///< commands, see when_at_rest()
 };
 
 }  // namespace rebake

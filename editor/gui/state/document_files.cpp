@@ -277,8 +277,14 @@ void Project::save_script(const fs::path& file) {
     refuse_replacing_other_than_script(file);
     std::string text;
     bool braces = false;
-    for (const Edit& one : session.document.history().edits()) {
-      const nlohmann::json line = to_json(one);
+    const History& history = session.document.history();
+    const std::vector<Edit> edits = history.edits();
+    const std::vector<std::size_t> before = history.edits_before();
+    for (std::size_t k = 0; k < edits.size(); ++k) {
+      // Nodes by name, because other scenes have other numbers.
+      const bool names = !edits[k].type().named_nodes(edits[k].value()).empty();
+      const nlohmann::json line =
+          names ? to_json_with_names(edits[k], history.scene_at(before[k], session.progress)) : to_json(edits[k]);
       text += line.dump() + "\n";
       try {
         braces = braces || with_variables(line, {}) != line;

@@ -21,13 +21,19 @@ struct Jobs {
   Worker worker;
   bool restarts_graphics = false;  ///< request to recreate all GPU objects
 
+  /// What pictures show: a scene, and of it these nodes; none: all.
+  struct Rendered {
+    Scene scene;
+    std::vector<NodeRef> nodes;
+  };
   struct Screenshot {
     std::filesystem::path path;
     int width = 0, height = 0;  ///< size in pixels
+    Rendered shows;
   };
   std::optional<Screenshot> screenshot;  ///< screenshot to be written in the next frame
   std::optional<CameraAnimation> film;   ///< running animation job
-  std::vector<NodeRef> rendered_nodes;   ///< nodes that screenshots and films show; empty: all
+  Rendered film_shows;                   ///< the scene and nodes when it was started
 
   /// Measured time and error of rendering choices, for one view of one scene.
   struct Costs {

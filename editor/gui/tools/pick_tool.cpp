@@ -12,6 +12,23 @@ namespace rebake {
 
 namespace {
 
+// As with the other tools, replacing and intersecting leave nothing selected in the other nodes of the scope.
+std::vector<Edit> flood(const Scene& scene, const SelectLike& like, const std::set<NodeId>& active) {
+  std::vector<Edit> edits;
+  if (like.mode == SelectMode::set || like.mode == SelectMode::intersect)
+    for (const PlacedNode& placed : placed_nodes(scene)) {
+      const bool selected = placed.node->selection && count(*placed.node->selection) > 0;
+      if (placed.node->id == like.node->id || !selected || !DocumentEditor::in_scope_of(active, scene, placed))
+        continue;
+      Select none;
+      none.node = NodeRef{placed.node->id};
+      none.none = true;
+      edits.emplace_back(none);
+    }
+  edits.emplace_back(like);
+  return edits;
+}
+
 void take(ToolContext& editor, const std::optional<PickHit>& picked, const Pointer& pointer, bool floods) {
   if (floods) {
     if (!picked) return;
@@ -27,18 +44,9 @@ void take(ToolContext& editor, const std::optional<PickHit>& picked, const Point
     like.color = editor.settings.likeness;
     like.contiguous = !editor.settings.flood_everywhere;
     like.mode = select_mode(pointer);
-    std::vector<Edit> edits;
-    // As with the other tools, replacing and intersecting leave nothing selected in the other nodes of the scope.
-    if (like.mode == SelectMode::set || like.mode == SelectMode::intersect)
-      for (const NodeId other : editor.nodes_in_scope(true)) {
-        if (other == picked->node) continue;
-        Select none;
-        none.node = NodeRef{other};
-        none.none = true;
-        edits.emplace_back(none);
-      }
-    edits.emplace_back(like);
-    editor.edits(edits);
+    // From the scene that it applies to, which an earlier click may have changed.
+    editor.edits_from(SelectLike::op,
+                      [like, active = editor.active](const Scene& scene) { return flood(scene, like, active); });
     return;
   }
   if (!pointer.shift && !pointer.control) editor.active.clear();
@@ -57,9 +65,11 @@ void PickTool::pointer(ToolContext& editor, const ViewportProjection& lens, cons
   auto picked = std::make_shared<std::optional<PickHit>>();
   editor.jobs.worker.start(
       "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },
-      [&editor, picked, pointer, floods = floods_, before = editor.active] {
-        // Nodes picked in the meantime are the newer wish.
-        if (editor.active == before) take(editor, *picked, pointer, floods);
+      [&editor, picked, pointer, floods = floods_, before = editor.active, taken = taken_] {
+        // Nodes picked in the meantime are the newer wish, unless an earlier click picked them.
+        if (editor.active != before && editor.active != *taken) return;
+        take(editor, *picked, pointer, floods);
+        *taken = editor.active;
       });
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <set>
+
 #include "editor/gui/tools/tool.h"
 
 namespace rebake {
@@ -17,6 +20,8 @@ class PickTool final : public ViewTool {
  private:
   bool floods_;
   Click click_;
+  /// What the last click has picked: a click that was made before it was handled goes on from there.
+  std::shared_ptr<std::set<NodeId>> taken_ = std::make_shared<std::set<NodeId>>();
 };
 
 }  // namespace rebake

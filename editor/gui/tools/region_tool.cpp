@@ -65,7 +65,13 @@ void RegionTool::finish(ToolContext& editor) {
     Erase erase;
     erase.picture = picture;
     erase.through = !editor.tools.visible_only();
-    editor.edit_scope(erase);
+    // One edit for all nodes, which does not erase texels that it uncovers.
+    for (const std::optional<NodeRef>& node : editor.scope())
+      if (node) erase.nodes.push_back(*node);
+    if (!editor.active.empty() && erase.nodes.empty())
+      editor.say_why_nothing(false);
+    else
+      editor.edit(erase);
     return;
   }
   SelectPicture select;

@@ -334,6 +334,68 @@ TEST_F(EditorContextTest, SavingWhileAnotherProjectOpensDoesNotReplaceTheFirst) 
   EXPECT_TRUE(find(editor->scene(), std::string("box"))->visible) << "the key was meant for the first project";
 }
 
+// Keys pressed before a click or another step is done work on its result, in their order.
+TEST_F(EditorContextTest, CommandsWaitForTheJobsBeforeThem) {
+  editor->active = {id("ball")};
+  std::atomic<bool> pressed = false;
+  const auto slow_pick = [&](NodeId node) {
+    pressed = false;
+    editor->jobs.worker.start(
+        "pick",
+        [&pressed](Session&) {
+          while (!pressed) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        },
+        [this, node] { editor->active = {node}; });
+    editor->update();
+  };
+  slow_pick(id("box"));
+  run_command(*editor, command_named("Hide"));
+  run_command(*editor, command_named("Undo"));
+  run_command(*editor, command_named("Duplicate"));
+  EXPECT_TRUE(editor->has_waiting_commands());
+  pressed = true;
+  for (int k = 0; k < 8; ++k) wait();
+  EXPECT_TRUE(find(editor->scene(), std::string("ball"))->visible);
+  EXPECT_TRUE(find(editor->scene(), std::string("box"))->visible) << "undone";
+  EXPECT_TRUE(find(editor->scene(), std::string("box.2")));
+  EXPECT_FALSE(find(editor->scene(), std::string("ball.2")));
+  // A select that takes long: Delete removes the triangles, not the node.
+  editor->active = {id("box")};
+  editor->jobs.worker.start("slow", [](Session&) { std::this_thread::sleep_for(std::chrono::milliseconds(30)); });
+  Select all;
+  all.node = NodeRef{id("ball")};
+  all.all = true;
+  editor->edit(all);
+  run_command(*editor, command_named("Remove picked nodes"));
+  editor->cancel_jobs();
+  for (int k = 0; k < 3; ++k) wait();
+  EXPECT_TRUE(find(editor->scene(), std::string("box"))) << "Esc drops waiting commands";
+  // A failure drops the commands after it.
+  editor->jobs.worker.start("fails", [](Session&) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    throw EditError("no");
+  });
+  run_command(*editor, command_named("Remove picked nodes"));
+  while (editor->jobs.worker.busy()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (int k = 0; k < 3; ++k) editor->update();
+  EXPECT_FALSE(editor->has_waiting_commands());
+  EXPECT_TRUE(find(editor->scene(), std::string("box")));
+}
+
+TEST_F(EditorContextTest, SavedScriptsNameNodes) {
+  Rename rename;
+  rename.node = {id("box")};
+  rename.name = "crate";
+  editor->edit(rename);
+  editor->edit(Hide{NodeRef{id("box")}});
+  wait();
+  editor->project.save_script(home.path() / "s.jsonl");
+  wait();
+  const std::string script = read_file(home.path() / "s.jsonl");
+  EXPECT_NE(script.find(R"("node":"box","op":"rename")"), std::string::npos) << script;
+  EXPECT_NE(script.find(R"("node":"crate","op":"hide")"), std::string::npos) << script;
+}
+
 // Edits made from what the window shows must not undo what a running job is about to change.
 TEST_F(EditorContextTest, EditsOfStatesThatAJobChangesAreRefused) {
   std::atomic<bool> made = false;
