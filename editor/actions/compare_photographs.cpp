@@ -140,7 +140,8 @@ void run(Session& session, const ComparePhotographsAction& action) {
   std::vector<std::string> names = photo_names(cameras);
   // The sheet has this name.
   for (std::string& name : names)
-    if (name == fs::path(sheet_name).stem()) name += "-photograph";
+    while (name == fs::path(sheet_name).stem() || std::count(names.begin(), names.end(), name) > 1)
+      name += "-photograph";
   const SourceGuard sources = session.document.sources();
   if (!action.out.empty()) {
     std::vector<std::string> files = names;
@@ -175,6 +176,7 @@ void run(Session& session, const ComparePhotographsAction& action) {
     Row row{names[k], errors_against(photograph, picture), {}};
     if (!action.out.empty()) {
       row.triptych = triptych_of(photograph, picture, row.errors);
+      check_output(action.out, {row.name}, sources);  // it may have appeared since
       write_picture(row.triptych, fs::path(action.out) / (row.name + ".png"), sources);
       row.triptych = for_sheet(std::move(row.triptych));
     }

@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/images/png_writer.h"
 #include "mesh_ops/formats/scene_files.h"
@@ -24,11 +25,41 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* page_mark = "<meta name=\"generator\" content=\"Rebake\">";
+constexpr std::string_view page_mark = "<meta name=\"generator\" content=\"Rebake\">\n";
+constexpr std::string_view hash_mark = "<meta name=\"rebake-content\" content=\"";
+
+std::string hash_line(const std::string& index, const std::string& poster) {
+  return fmt::format("{}{}\">\n", hash_mark, hash_text(content_hash(index + poster)));
+}
+
+bool refers_to_poster(const std::string& index) { return index.find("\"poster.png\"") != std::string::npos; }
+
+// Adds the hash of index.html and the poster, by which later publishing tells whether they were changed.
+void add_hash(WebPage& page) {
+  std::string& index = page.files.at("index.html");
+  const std::string line = hash_line(index, refers_to_poster(index) ? page.files.at("poster.png") : "");
+  index.insert(index.find(page_mark) + page_mark.size(), line);
+}
 
 bool is_page(const fs::path& file) {
   std::error_code error;
   return fs::is_regular_file(file, error) && read_file(file).find(page_mark) != std::string::npos;
+}
+
+// Throws FileError if someone has changed index.html or the poster beside it. Pages of older versions have no hash.
+void refuse_changed(const fs::path& file) {
+  std::string index = read_file(file);
+  const std::size_t at = index.find(hash_mark);
+  if (at == std::string::npos) return;
+  const std::string line = index.substr(at, index.find('\n', at) + 1 - at);
+  index.erase(at, line.size());
+  std::error_code error;
+  const fs::path poster = file.parent_path() / "poster.png";
+  const bool has_poster = refers_to_poster(index) && fs::is_regular_file(poster, error);
+  if (line != hash_line(index, has_poster ? read_file(poster) : ""))
+    throw FileError(file,
+                    "or its poster was changed since it was published, so it is not replaced; choose another name, or "
+                    "move it elsewhere");
 }
 
 // Whether a file of a page's folder is part of this page: it has the name of such a file, and the page refers to it.
@@ -49,6 +80,7 @@ void refuse_other_folder(const fs::path& folder) {
   if (fs::is_empty(folder)) return;
   if (!is_page(folder / "index.html"))
     throw FileError(folder, "exists and is not a published page; choose a new or empty folder");
+  refuse_changed(folder / "index.html");
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const fs::path inside = entry.path().lexically_relative(folder);
     const bool is_own = entry.is_directory() ? inside == "data" || inside == "viewer" : is_of_page(folder, inside);
@@ -62,8 +94,10 @@ void refuse_other_folder(const fs::path& folder) {
 void refuse_other_file(const fs::path& file) {
   refuse_replacing_work(file);
   std::error_code error;
-  if (fs::exists(file, error) && fs::file_size(file, error) > 0 && !is_page(file))
+  if (!fs::exists(file, error) || fs::file_size(file, error) == 0) return;
+  if (!is_page(file))
     throw FileError(file, "exists and is not a published page, so it is not replaced; choose another name");
+  refuse_changed(file);
 }
 
 WebPageOptions options_of(const Scene& scene, const PublishAction& action) {
@@ -145,8 +179,9 @@ void run(Session& session, const PublishAction& action) {
     std::optional<Scene> before;
     if (!action.before.empty()) before = opened(action.before, session.progress);
     const Lighting before_lighting = before ? lit(*before, session.progress) : Lighting();
-    const WebPage page = web_page({scene, lighting, &posed.poses}, options, session.progress,
-                                  before ? std::optional<LitScene>({*before, before_lighting, nullptr}) : std::nullopt);
+    WebPage page = web_page({scene, lighting, &posed.poses}, options, session.progress,
+                            before ? std::optional<LitScene>({*before, before_lighting, nullptr}) : std::nullopt);
+    add_hash(page);
     commit(page);
     session.outputs.push_back(action.out);
     session.say(fmt::format("published {}: {} triangles, {:.2f} MB", action.out, page.triangles,
@@ -158,7 +193,10 @@ void run(Session& session, const PublishAction& action) {
         session.say(fmt::format("note: the hidden node \"{}\" is not published", placed.node->name));
   };
   if (action.single_file) {
-    write([&](const WebPage& page) { write_file_atomically(action.out, page.files.at("index.html"), sources); });
+    write([&](const WebPage& page) {
+      refuse_other_file(action.out);  // it may have appeared since
+      write_file_atomically(action.out, page.files.at("index.html"), sources);
+    });
     return;
   }
   AtomicFolder out(action.out, sources, refuse_other_folder);

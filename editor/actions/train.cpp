@@ -212,7 +212,7 @@ void run(Session& session, const TrainAction& action, const TrainingObserver& ob
                           duration_text(training.seconds())));
   nlohmann::json report = report_of(training, action, counts, *node.object);
   report["held out"] = judge(session, training, scene);
-  write_file_atomically(out / report_name, report.dump(1) + "\n", sources);
+  write_file_atomically(out / report_name, report.dump(1) + "\n", sources_of(session, observer));
   training.remove_work_files();
   session.say(fmt::format("wrote the scene to {}; its rebake_training.json has the plan and all figures", action.out));
 }

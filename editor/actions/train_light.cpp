@@ -25,7 +25,12 @@ std::vector<std::string> deformations_of(const Document& document, NodeId node) 
   for (const Edit& edit : document.history().edits()) {
     if (!edit.type().deforms) continue;
     const nlohmann::json line = to_json(edit);
-    if (line.contains("node") && line.at("node") == static_cast<std::uint64_t>(node)) lines.push_back(line.dump());
+    if (!line.contains("node") || line.at("node") != static_cast<std::uint64_t>(node)) continue;
+    if (line.value("selection", false))
+      throw FieldError("edits", fmt::format("is missing: a \"{}\" of the history moves the triangles that were "
+                                            "selected then; give edits that move it",
+                                            edit.type().op));
+    lines.push_back(line.dump());
   }
   return lines;
 }
@@ -101,6 +106,7 @@ void run(Session& session, const TrainLightAction& action) {
   const TransferModel model = trained_light_model(scene, node, edits, options, session.progress);
   for (const std::string& fact : facts_of(model)) session.say(fact);
   if (!action.out.empty()) {
+    check_light_model_output(action.out, sources);  // it may have appeared since
     write_file_atomically(action.out, bytes_of(model), sources);
     session.outputs.push_back(action.out);
   }

@@ -64,7 +64,10 @@ void train(const Options& options) {
   const TransferModel model = trained_light_model(scene, node, options.edits, learning, progress_bar());
   clear_progress_bar();
   say(model);
-  if (!out.empty()) write_file_atomically(out, bytes_of(model), sources);
+  if (!out.empty()) {
+    check_light_model_output(out, sources);  // it may have appeared since
+    write_file_atomically(out, bytes_of(model), sources);
+  }
   if (!worth_using(model)) {
     const std::string why = "it is no better than rotating the transfer, which drags use without a model";
     if (out.empty()) throw Error("the model is not stored: " + why);

@@ -44,7 +44,8 @@ class LiveDocuments {
     const std::scoped_lock lock(mutex_);
     std::vector<SourceGuard> others;
     for (const auto& [other, entry] : entries_) {
-      const bool made_here = std::all_of(entry.imports.begin(), entry.imports.end(),
+      const bool made_here = !entry.imports.empty() &&
+                             std::all_of(entry.imports.begin(), entry.imports.end(),
                                          [&](const std::filesystem::path& path) { return exports_.contains(path); });
       if (other != document && (entry.holds_work || !made_here)) others.push_back(entry.sources);
     }

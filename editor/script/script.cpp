@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -41,6 +42,22 @@ std::string reference_of(const char* op, const char* help, const std::vector<Fie
                                                                         : "`" + line.initial + "`",
                        line.help);
   return out + '\n';
+}
+
+// Whether a field that takes nodes has a number.
+bool names_nodes_by_number(const json& line) {
+  const auto is_number = [](const json& value) {
+    return value.is_number() || (value.is_array() && std::any_of(value.begin(), value.end(),
+                                                                 [](const json& one) { return one.is_number(); }));
+  };
+  for (const EditType* type : edit_types()) {
+    if (line.value("op", "") != type->op) continue;
+    for (const FieldInfo& field : type->fields())
+      if ((field.type.kind == FieldKind::node || field.type.kind == FieldKind::nodes) && line.contains(field.name) &&
+          is_number(line.at(field.name)))
+        return true;
+  }
+  return false;
 }
 
 // The projects that a script saves; lines with errors are left to run_script().
@@ -125,6 +142,7 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
   std::istringstream lines{with_line_feeds(text)};
   session.projects_to_come = saved_projects(lines.str(), variables);
   std::size_t number = 0;
+  bool warned = session.scene().roots.empty();  // numbers are those of the script's own nodes
   for (std::string line; std::getline(lines, line);) {
     ++number;
     const std::string_view command_line = command_text(line);
@@ -138,6 +156,13 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
       session.document.protect_files_of(filled);
       check_boxes(filled);
       const ScriptCommand command = read_command(filled, session.scene());
+      if (!warned && names_nodes_by_number(filled)) {
+        warned = true;
+        session.say(
+            fmt::format("warning: {}: line {}: gives a node by its number; in this scene, which had nodes before, "
+                        "it may be another one than the script was made for",
+                        name.string(), number));
+      }
       if (const Edit* edit = std::get_if<Edit>(&command))
         session.edit(*edit);
       else

@@ -80,6 +80,12 @@ TEST_F(LightModel, OfAnEditedObjectIsThatOfTheObjectAsRead) {
 TEST_F(LightModel, RefusesWhatCannotBeTrained) {
   run(import);
   expect_error(R"({"op": "train_light"})", "bend it first");
+  // The selection may be another one by now.
+  run(R"({"op": "select", "all": true}
+{"op": "bend", "node": "ball", "selection": true, "degrees": 20})");
+  expect_error(R"({"op": "train_light", "node": "ball"})", "moves the triangles that were selected then");
+  run(R"({"op": "undo"}
+{"op": "undo"})");
   expect_error(R"({"op": "train_light", "edits": []})", "must be a list of edits");
   expect_error(R"({"op": "train_light", "edits": [{"op": "bnd"}]})", "bnd");
   expect_error(R"({"op": "train_light", "edits": [{"op": "remove", "node": "ball"}]})", "removes the object");

@@ -223,6 +223,15 @@ TEST_F(Cli, PublishedPagesReplaceOnlyPages) {
     EXPECT_TRUE(std::filesystem::exists(in("page/" + std::string(file)))) << file;
     std::filesystem::remove(in("page/" + std::string(file)));
   }
+  // A page or poster that someone has changed since.
+  for (const char* file : {"poster.png", "index.html"}) {
+    EXPECT_EQ(rebake_run(publish + in("page") + " --poster").code, 0) << file;
+    const std::string published = read_file(in("page/" + std::string(file)));
+    write_text(in("page/" + std::string(file)), published + "<p>mine</p>");
+    EXPECT_EQ(rebake_run(publish + in("page")).code, 1) << file;
+    EXPECT_EQ(read_file(in("page/" + std::string(file))), published + "<p>mine</p>");
+    write_text(in("page/" + std::string(file)), published);
+  }
   const auto scene = folder_bytes(in("ball"));
   export_scene(scene_of(made_object({.seed = 5})), folder_.path() / "other", {});
   EXPECT_EQ(rebake_run(publish + in("other")).code, 1) << "another scene";
@@ -233,7 +242,9 @@ TEST_F(Cli, PublishedPagesReplaceOnlyPages) {
   EXPECT_EQ(rebake_run(single).code, 1);
   EXPECT_EQ(read_file(in("page.html")), "<p>mine</p>");
   std::filesystem::remove(in("page.html"));
-  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(single).code, 0);
+  for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(single + " --poster").code, 0);
+  write_text(in("page.html"), read_file(in("page.html")) + "<p>mine</p>");
+  EXPECT_EQ(rebake_run(single).code, 1) << "changed by hand";
   EXPECT_EQ(rebake_run(publish + in("page2") + " --single-file").code, 2) << "must end in .html";
 }
 

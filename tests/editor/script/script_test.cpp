@@ -44,6 +44,18 @@ TEST_F(Script, SelectInEveryFrameAndMode) {
   EXPECT_EQ(selected("ball"), 256U);  // the sphere is one connected component
 }
 
+// Numbers of nodes are those of the scene that a script was made on.
+TEST_F(Script, NodesByNumberInASceneWithOtherNodesAreSaid) {
+  std::string said;
+  session.say = [&](const std::string& line) { said += line + "\n"; };
+  run(import + R"({"op": "hide", "node": 1})");
+  EXPECT_EQ(said.find("by its number"), std::string::npos) << "its own node";
+  run(R"({"op": "show", "node": "ball"})");
+  EXPECT_EQ(said.find("by its number"), std::string::npos);
+  run(R"({"op": "hide", "node": 1})");
+  EXPECT_NE(said.find("line 1: gives a node by its number"), std::string::npos) << said;
+}
+
 TEST_F(Script, FailedEditKeepsTheScene) {
   run(import + R"({"op": "lock", "node": "ball"})");
   const NodePtr before = node("ball");
