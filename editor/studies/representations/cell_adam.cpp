@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh_ops/reconstruction/gradient_steps.h"
+
 namespace rebake {
 
 double fit_rate(double passes) {
@@ -55,6 +57,22 @@ void CellAdam::step(std::size_t batch, double rate_scale, const std::function<vo
           bound(&values_[cell * channels_]);
         }
       });
+}
+
+void CellAdam::save(std::string& bytes) const {
+  put_numbers(bytes, values_);
+  put_numbers(bytes, mean_);
+  put_numbers(bytes, square_);
+  put_numbers(bytes, std::vector<int>{steps_});
+}
+
+void CellAdam::load(std::string_view& bytes) {
+  take_numbers(bytes, values_);
+  take_numbers(bytes, mean_);
+  take_numbers(bytes, square_);
+  std::vector<int> steps{0};
+  take_numbers(bytes, steps);
+  steps_ = steps.front();
 }
 
 }  // namespace rebake

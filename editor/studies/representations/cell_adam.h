@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace rebake {
@@ -36,6 +38,10 @@ class CellAdam {
   }
   /// A step with the mean gradient of `batch` rays; clears gradients. `bound` limits the values of a cell afterwards.
   void step(std::size_t batch, double rate_scale, const std::function<void(float* values)>& bound);
+
+  /// The state between two steps: appended to `bytes`, and taken from their front. Throws Error if they end too early.
+  void save(std::string& bytes) const;
+  void load(std::string_view& bytes);
 
  private:
   std::size_t channels_;

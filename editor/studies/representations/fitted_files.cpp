@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,7 @@
 #include "editor/studies/representations/plenoctree_fit.h"
 #include "editor/studies/representations/snerg_files.h"
 #include "editor/studies/representations/snerg_fit.h"
+#include "editor/training/checkpoint.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/export.h"
@@ -23,6 +25,7 @@ namespace rebake {
 
 namespace fs = std::filesystem;
 using Method = FittedFiles::Method;
+using Clock = std::chrono::steady_clock;
 
 namespace {
 
@@ -45,7 +48,9 @@ double processor_minutes() { return static_cast<double>(std::clock()) / CLOCKS_P
 class Budget {
  public:
   Budget(const StudyInput& input, FittedFiles& fitted, std::vector<HeldOutView> views, int most)
-      : input_(input), fitted_(fitted), views_(std::move(views)), most_(most) {}
+      : input_(input), fitted_(fitted), views_(std::move(views)), most_(most) {
+    for (const auto& [passes, db] : fitted.curve) best_ = std::max(best_, db);
+  }
 
   // Whether to double `passes`. `better`: called if no earlier result was as good.
   bool goes_on(int passes, const std::function<Image(const View&)>& draw, const std::function<void()>& better) {
@@ -67,10 +72,10 @@ class Budget {
     return gain >= enough_db && 2 * passes <= most_;
   }
   template <class Volume>
-  bool goes_on_with(int passes, const Volume& volume, std::optional<Volume>& best) {
+  bool goes_on_with(int passes, const Volume& volume, const std::function<void(const Volume&)>& write) {
     MarchedVolume drawing(volume, input_.renderer().context());
     return goes_on(
-        passes, [&](const View& view) { return drawing.picture(view); }, [&] { best = volume; });
+        passes, [&](const View& view) { return drawing.picture(view); }, [&] { write(volume); });
   }
   double minutes_of_measuring() const { return measuring_; }
 
@@ -110,7 +115,52 @@ int most_passes_of(const RepresentationSizes& sizes, Method method) {
   return method == Method::mobilenerf ? most_epochs : sizes.most_passes;
 }
 
+std::string text_of(const RepresentationSizes& sizes) {
+  return fmt::format("version {}, {} views of {}² rays, pictures of {}²", fit_version, sizes.views, sizes.ray_side,
+                     sizes.picture);
+}
+
+// Written over those of a worse result.
+fs::path fresh_folder(const fs::path& folder) {
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+void write_best(const FittedFiles& fitted, const SnergScene& best) {
+  write_snerg(best, fresh_folder(fitted.folder / "baked"), {});
+}
+void write_best(const FittedFiles& fitted, const PlenOctree& best) {
+  write_plenoctree(best, fresh_folder(fitted.folder / "baked") / "tree.npz", {});
+  write_quantised_plenoctree(best, fresh_folder(fitted.folder / "web") / "tree.npz", {});
+}
+
+fs::path checkpoint_of(const FittedFiles& fitted) { return fitted.folder / "checkpoint"; }
+
+nlohmann::json head_of(const RepresentationSizes& sizes, const FittedFiles& fitted, int passes) {
+  return {{"sizes", text_of(sizes)}, {"minutes", fitted.minutes}, {"passes", passes}, {"curve", fitted.curve}};
+}
+
+// The state of an interrupted fit of these sizes, whose curve and minutes `fitted` then has.
+FitCheckpoints interrupted_fit(const RepresentationSizes& sizes, FittedFiles& fitted) {
+  FitCheckpoints checkpoints;
+  try {
+    nlohmann::json head;
+    const std::optional<std::string> state = read_checkpoint(checkpoint_of(fitted), head);
+    if (!state || head.at("sizes") != text_of(sizes)) return checkpoints;
+    fitted.minutes = head.at("minutes");
+    fitted.curve = head.at("curve").get<std::vector<std::array<double, 2>>>();
+    fitted.passes = fitted.curve.empty() ? 0 : static_cast<int>(fitted.curve.back()[0]);
+    checkpoints.start = FitCheckpoints::State{head.at("passes"), *state};
+  } catch (const std::exception&) {
+    throw FileError(checkpoint_of(fitted), "is damaged; remove it to fit this representation from the start");
+  }
+  return checkpoints;
+}
+
 void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth& truth, FittedFiles& fitted) {
+  FitCheckpoints checkpoints = interrupted_fit(sizes, fitted);
+  if (checkpoints.start)
+    input.say(fmt::format("{}, {}: goes on after {} passes", fitted.sample, fitted.name, checkpoints.start->passes));
   std::vector<HeldOutView> views = truth.validation(fitted.folder.parent_path());
   const bool epochs = fitted.method == Method::mobilenerf;
   Budget budget(input, fitted, std::move(views), most_passes_of(sizes, fitted.method));
@@ -120,29 +170,30 @@ void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth&
     return fit_mobilenerf(input, sizes, truth, fitted, budget);
   }
   truth.rays();  // before time counts
-  const double start = processor_minutes();
-  if (fs::create_directories(fitted.folder / "baked"); fitted.method == Method::snerg) {
-    std::optional<SnergScene> best;
+  const double start = processor_minutes() - fitted.minutes;
+  const auto minutes = [&] { return processor_minutes() - start - budget.minutes_of_measuring(); };
+  checkpoints.keep = [&, kept = Clock::now()](int passes, const std::function<std::string()>& state) mutable {
+    // Often enough that little is lost, and at the end of each doubling, whose result is then on disk.
+    if (passes != fitted.passes && Clock::now() - kept < std::chrono::minutes(2)) return;
+    fitted.minutes = minutes();
+    write_checkpoint(checkpoint_of(fitted), head_of(sizes, fitted, passes), state());
+    kept = Clock::now();
+  };
+  if (fitted.method == Method::snerg)
     fit_snerg(
         truth.rays(), fitted.resolution,
-        [&](int passes, const SnergScene& now) { return budget.goes_on_with(passes, now, best); }, input.progress);
-    fitted.minutes = processor_minutes() - start - budget.minutes_of_measuring();
-    write_snerg(*best, fitted.folder / "baked", {});
-  } else {
-    std::optional<PlenOctree> best;
+        [&](int passes, const SnergScene& now) {
+          return budget.goes_on_with<SnergScene>(passes, now, [&](const auto& best) { write_best(fitted, best); });
+        },
+        input.progress, checkpoints);
+  else
     fit_plenoctree(
         truth.rays(), fitted.resolution,
-        [&](int passes, const PlenOctree& now) { return budget.goes_on_with(passes, now, best); }, input.progress);
-    fitted.minutes = processor_minutes() - start - budget.minutes_of_measuring();
-    write_plenoctree(*best, fitted.folder / "baked" / "tree.npz", {});
-    fs::create_directories(fitted.folder / "web");
-    write_quantised_plenoctree(*best, fitted.folder / "web" / "tree.npz", {});
-  }
-}
-
-std::string text_of(const RepresentationSizes& sizes) {
-  return fmt::format("version {}, {} views of {}² rays, pictures of {}²", fit_version, sizes.views, sizes.ray_side,
-                     sizes.picture);
+        [&](int passes, const PlenOctree& now) {
+          return budget.goes_on_with<PlenOctree>(passes, now, [&](const auto& best) { write_best(fitted, best); });
+        },
+        input.progress, checkpoints);
+  fitted.minutes = minutes();
 }
 
 // Whether a fit ended at an earlier limit of passes, although it gained from each doubling and may have more now.
@@ -152,11 +203,13 @@ bool may_gain_more(const RepresentationSizes& sizes, const FittedFiles& fitted) 
   return gained && 2 * fitted.passes <= most_passes_of(sizes, fitted.method);
 }
 
-// The result of fit(); written last, so that an interrupted fit is repeated.
+// The result of fit(); written last, so that an interrupted fit goes on.
 void write_result(const RepresentationSizes& sizes, const FittedFiles& fitted) {
   const nlohmann::json result{
       {"sizes", text_of(sizes)}, {"minutes", fitted.minutes}, {"passes", fitted.passes}, {"curve", fitted.curve}};
   write_file_atomically(fitted.folder / "fit.json", result.dump(), {});
+  std::error_code error;
+  fs::remove(checkpoint_of(fitted), error);
 }
 
 bool read_result(const RepresentationSizes& sizes, FittedFiles& fitted) {
@@ -232,6 +285,7 @@ std::vector<FittedFiles> fitted_files(const StudyInput& input, const Representat
   for (FittedFiles& fitted : all) {
     if (read_result(sizes, fitted)) continue;
     fitted.curve.clear();
+    fitted.minutes = 0;
     fit(input, sizes, truth, fitted);
     write_result(sizes, fitted);
   }

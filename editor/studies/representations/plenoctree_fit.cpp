@@ -59,7 +59,7 @@ class Fit {
     }
   }
 
-  PlenOctree packed() {
+  PlenOctree packed(int /*passes*/, const Progress& /*progress*/) {
     mark_seen();
     PlenOctree tree;
     tree.basis = static_cast<int>(basis);
@@ -68,6 +68,14 @@ class Fit {
     add_node(tree, {0, 0, 0}, resolution_);
     return tree;
   }
+
+  // The state between two passes.
+  std::string save() const {
+    std::string bytes;
+    adam_.save(bytes);
+    return bytes;
+  }
+  void load(std::string_view bytes) { adam_.load(bytes); }
 
  private:
   static constexpr float least_seen = 0.005F;
@@ -214,13 +222,10 @@ class Fit {
 }  // namespace
 
 PlenOctree fit_plenoctree(const TruthRays& rays, int resolution,
-                          const std::function<bool(int, const PlenOctree&)>& goes_on, const Progress& progress) {
+                          const std::function<bool(int, const PlenOctree&)>& goes_on, const Progress& progress,
+                          const FitCheckpoints& checkpoints) {
   Fit fit(rays, resolution);
-  for (int passes = 0, next = 1;; next *= 2) {
-    for (; passes < next; ++passes) fit.pass(passes, progress);
-    PlenOctree tree = fit.packed();
-    if (!goes_on(passes, tree)) return tree;
-  }
+  return run_fit(fit, goes_on, progress, checkpoints);
 }
 
 }  // namespace rebake

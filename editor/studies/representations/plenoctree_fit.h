@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "editor/studies/representations/fit_steps.h"
 #include "editor/studies/representations/plenoctree.h"
 #include "editor/studies/representations/scene_kinds.h"
 
@@ -12,6 +13,6 @@ namespace rebake {
 /// fit_snerg(). Deterministic at any number of threads.
 PlenOctree fit_plenoctree(const TruthRays& rays, int resolution,
                           const std::function<bool(int passes, const PlenOctree& tree)>& goes_on,
-                          const Progress& progress);
+                          const Progress& progress, const FitCheckpoints& checkpoints = {});
 
 }  // namespace rebake

@@ -88,6 +88,18 @@ class Fit {
     return scene;
   }
 
+  // The state between two passes.
+  std::string save() const {
+    std::string bytes;
+    adam_.save(bytes);
+    network_.save(bytes);
+    return bytes;
+  }
+  void load(std::string_view bytes) {
+    adam_.load(bytes);
+    network_.load(bytes);
+  }
+
  private:
   static constexpr float least_seen = 0.005F;  // the paper's threshold of visibility
 
@@ -260,13 +272,9 @@ class Fit {
 }  // namespace
 
 SnergScene fit_snerg(const TruthRays& rays, int resolution, const std::function<bool(int, const SnergScene&)>& goes_on,
-                     const Progress& progress) {
+                     const Progress& progress, const FitCheckpoints& checkpoints) {
   Fit fit(rays, resolution);
-  for (int passes = 0, next = 1;; next *= 2) {
-    for (; passes < next; ++passes) fit.pass(passes, progress);
-    SnergScene scene = fit.packed(passes, progress);
-    if (!goes_on(passes, scene)) return scene;
-  }
+  return run_fit(fit, goes_on, progress, checkpoints);
 }
 
 }  // namespace rebake

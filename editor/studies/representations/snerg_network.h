@@ -33,6 +33,10 @@ class SnergNetwork {
 
   SnergDecoder decoder() const;
 
+  /// See CellAdam.
+  void save(std::string& bytes) const { adam_.save(bytes); }
+  void load(std::string_view& bytes) { adam_.load(bytes); }
+
  private:
   // One cell whose channels are all parameters: weights [output][input] and biases of each layer.
   CellAdam adam_;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <map>
+
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "tests/support/made_scenes.h"
@@ -22,11 +25,13 @@ class FittedFilesTest : public ::testing::Test {
   }
   std::vector<FittedFiles> fit() {
     const Scene scene;
-    const StudyInput input{[this]() -> Renderer& { return renderer; }, scene, {}, 1, {}, {}, folder.path()};
-    SampleTruth truth("kettle", sizes, {});
+    const StudyInput input{[this]() -> Renderer& { return renderer; }, scene, {}, 1, progress, {}, folder.path(), say};
+    SampleTruth truth("kettle", sizes, progress);
     return fitted_files(input, sizes, "kettle", truth, folder.path());
   }
   Renderer renderer;
+  Progress progress;
+  std::function<void(const std::string&)> say = [](const std::string&) {};
   RepresentationSizes sizes;
   test::TemporaryFolder folder;
 };
@@ -53,7 +58,51 @@ TEST_F(FittedFilesTest, AreFittedOnceAndReadAfterwards) {
   EXPECT_NE(read_file(fit().back().folder / "fit.json"), bytes.back());
 }
 
+TEST_F(FittedFilesTest, InterruptedFitsGoOnWithTheSameBytes) {
+  sizes.texels = {};
+  sizes.most_passes = 8;
+  const auto bytes_of = [](const std::vector<FittedFiles>& all) {
+    std::vector<std::map<std::string, std::string>> bytes;
+    for (const FittedFiles& one : all) {
+      bytes.push_back(test::folder_bytes(one.folder));
+      bytes.back().erase("fit.json");
+    }
+    return bytes;
+  };
+  const std::vector<FittedFiles> whole = fit();
+  const auto wanted = bytes_of(whole);
+  for (const FittedFiles& one : whole) std::filesystem::remove_all(one.folder);
+  std::atomic<bool> cancel = false;
+  progress = Progress([](std::string_view, double) {}, &cancel);
+  std::string said;
+  say = [&](const std::string& line) {
+    said += line + "\n";
+    // During the passes after it.
+    if (line.find(" after 4 passes") != std::string::npos && line.find("goes on") == std::string::npos) cancel = true;
+  };
+  for (int stops = 0; stops < 2; ++stops) {
+    EXPECT_THROW(fit(), Cancelled);
+    cancel = false;
+  }
+  std::vector<FittedFiles> parts = fit();
+  EXPECT_NE(said.find("goes on after 4 passes"), std::string::npos) << said;
+  EXPECT_EQ(bytes_of(parts), wanted);
+  for (std::size_t k = 0; k < parts.size(); ++k) EXPECT_EQ(parts[k].curve, whole[k].curve);
+  // A damaged checkpoint is refused by name.
+  const std::filesystem::path checkpoint = parts[0].folder / "checkpoint";
+  std::filesystem::remove(parts[0].folder / "fit.json");
+  EXPECT_FALSE(std::filesystem::exists(checkpoint));
+  write_file_atomically(checkpoint, "no checkpoint", {});
+  try {
+    fit();
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("checkpoint: is damaged"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(FittedFilesTest, DamagedResultsAreRefusedByName) {
+  sizes.texels = {};
   const std::filesystem::path file = fit().back().folder / "fit.json";
   for (const char* const damaged : {"", "{", "[]", "{\"sizes\": 3}", "null"}) {
     write_file_atomically(file, damaged, {});
