@@ -80,6 +80,11 @@ class NodeTest(WindowCase):
         self.assertEqual(editor.state()["steps"], 2)
         editor.key("ctrl+shift+z")
         editor.until_ops("import", "transform", "transform", "undo", "redo")
+        # Beyond 90 degrees an angle has other names, which must not change it during a drag.
+        x, y = editor.where("adjust/rotate/Y")
+        editor.drag([(x, y), (x + 120, y), (x + 121, y), (x + 120, y)])
+        w, _, turn, _ = editor.last_edit()["rotate"]
+        self.assertAlmostEqual(math.degrees(2 * math.atan2(turn, w)), 120, delta=2)
         # The node under drag disappears: the next one must not take its number.
         editor.key("ctrl+d")
         self.assertEqual(editor.state()["picked"], ["ficus.2"])
