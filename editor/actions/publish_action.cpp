@@ -28,16 +28,21 @@ namespace {
 constexpr std::string_view page_mark = "<meta name=\"generator\" content=\"Rebake\">\n";
 constexpr std::string_view hash_mark = "<meta name=\"rebake-content\" content=\"";
 
-std::string hash_line(const std::string& index, const std::string& poster) {
-  return fmt::format("{}{}\">\n", hash_mark, hash_text(content_hash(index + poster)));
+using Files = std::map<std::string, std::string>;  // relative path → bytes
+
+std::string hash_line(const Files& files) {
+  ContentHash hash;
+  for (const auto& [name, bytes] : files) {
+    hash.add(fmt::format("{} {} ", name, bytes.size()));
+    hash.add(bytes);
+  }
+  return fmt::format("{}{}\">\n", hash_mark, hash_text(hash.value()));
 }
 
-bool refers_to_poster(const std::string& index) { return index.find("\"poster.png\"") != std::string::npos; }
-
-// Adds the hash of index.html and the poster, by which later publishing tells whether they were changed.
-void add_hash(WebPage& page) {
-  std::string& index = page.files.at("index.html");
-  const std::string line = hash_line(index, refers_to_poster(index) ? page.files.at("poster.png") : "");
+// Adds the hash of all files to index.html, by which later publishing tells whether they were changed.
+void add_hash(Files& files) {
+  const std::string line = hash_line(files);
+  std::string& index = files.at("index.html");
   index.insert(index.find(page_mark) + page_mark.size(), line);
 }
 
@@ -46,20 +51,16 @@ bool is_page(const fs::path& file) {
   return fs::is_regular_file(file, error) && read_file(file).find(page_mark) != std::string::npos;
 }
 
-// Throws FileError if someone has changed index.html or the poster beside it. Pages of older versions have no hash.
-void refuse_changed(const fs::path& file) {
-  std::string index = read_file(file);
+// Throws FileError if someone has changed the files of a page. Pages of older versions have no hash.
+void refuse_changed(const fs::path& page, Files files) {
+  std::string& index = files.at("index.html");
   const std::size_t at = index.find(hash_mark);
   if (at == std::string::npos) return;
   const std::string line = index.substr(at, index.find('\n', at) + 1 - at);
   index.erase(at, line.size());
-  std::error_code error;
-  const fs::path poster = file.parent_path() / "poster.png";
-  const bool has_poster = refers_to_poster(index) && fs::is_regular_file(poster, error);
-  if (line != hash_line(index, has_poster ? read_file(poster) : ""))
-    throw FileError(file,
-                    "or its poster was changed since it was published, so it is not replaced; choose another name, or "
-                    "move it elsewhere");
+  if (line != hash_line(files))
+    throw FileError(
+        page, "was changed since it was published, so it is not replaced; choose another name, or move it elsewhere");
 }
 
 // Whether a file of a page's folder is part of this page: it has the name of such a file, and the page refers to it.
@@ -80,7 +81,7 @@ void refuse_other_folder(const fs::path& folder) {
   if (fs::is_empty(folder)) return;
   if (!is_page(folder / "index.html"))
     throw FileError(folder, "exists and is not a published page; choose a new or empty folder");
-  refuse_changed(folder / "index.html");
+  Files files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const fs::path inside = entry.path().lexically_relative(folder);
     const bool is_own = entry.is_directory() ? inside == "data" || inside == "viewer" : is_of_page(folder, inside);
@@ -88,7 +89,9 @@ void refuse_other_folder(const fs::path& folder) {
       throw FileError(
           folder,
           fmt::format("contains \"{}\", which is not part of its page; choose a new or empty folder", inside.string()));
+    if (entry.is_regular_file()) files[inside.generic_string()] = read_file(entry.path());
   }
+  refuse_changed(folder, std::move(files));
 }
 
 void refuse_other_file(const fs::path& file) {
@@ -97,7 +100,7 @@ void refuse_other_file(const fs::path& file) {
   if (!fs::exists(file, error) || fs::file_size(file, error) == 0) return;
   if (!is_page(file))
     throw FileError(file, "exists and is not a published page, so it is not replaced; choose another name");
-  refuse_changed(file);
+  refuse_changed(file, {{"index.html", read_file(file)}});
 }
 
 WebPageOptions options_of(const Scene& scene, const PublishAction& action) {
@@ -181,7 +184,7 @@ void run(Session& session, const PublishAction& action) {
     const Lighting before_lighting = before ? lit(*before, session.progress) : Lighting();
     WebPage page = web_page({scene, lighting, &posed.poses}, options, session.progress,
                             before ? std::optional<LitScene>({*before, before_lighting, nullptr}) : std::nullopt);
-    add_hash(page);
+    add_hash(page.files);
     commit(page);
     session.outputs.push_back(action.out);
     session.say(fmt::format("published {}: {} triangles, {:.2f} MB", action.out, page.triangles,

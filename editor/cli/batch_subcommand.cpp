@@ -124,14 +124,20 @@ void describe_batch(SubcommandDescription& command) {
     if (!lock.held())
       throw FieldError("--report", report.string() + " is being written by another batch; name another file");
     prepare_report(report);
-    std::ofstream lines(report);
-    if (!lines) throw FileError(report, "cannot be written");
+    // Replaces an earlier report only when there is a result.
+    std::ofstream lines;
+    const auto open = [&] {
+      if (!lines.is_open()) lines.open(report);
+      if (!lines) throw FileError(report, "cannot be written");
+    };
     const std::vector<BatchResult> results = run_batch(batch, progress_bar(), [&](const BatchResult& result) {
+      open();
       // Names and messages may contain invalid UTF-8.
       lines << to_json(result).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
       if (!lines) throw FileError(report, "cannot be written");
     });
     clear_progress_bar();
+    open();
     print_table(results);
     for (const BatchResult& result : results)
       if (result.status == BatchResult::Status::failed) throw ExitWith{1};

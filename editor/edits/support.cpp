@@ -174,27 +174,44 @@ Scene with_only(const Scene& scene, const std::vector<NodeRef>& nodes) {
   return result;
 }
 
-Box subtree_bounds(const Scene& scene, NodeId id) {
+namespace {
+
+// A node and its children, the node itself visible, where they are in the world.
+Scene subtree(const Scene& scene, NodeId id) {
   Scene part;
-  for (const PlacedNode& placed : placed_nodes(scene)) {
-    if (placed.node->id != id) continue;
-    Node root = *placed.node;
-    root.visible = true;
-    root.to_parent = placed.to_world;
-    part.roots.push_back(std::make_shared<const Node>(std::move(root)));
-  }
-  return world_bounds(part);
+  const PlacedNode placed = present(scene, id);
+  Node root = *placed.node;
+  root.visible = true;
+  root.to_parent = placed.to_world;
+  part.roots.push_back(std::make_shared<const Node>(std::move(root)));
+  return part;
 }
 
-double lowest_visible(const Scene& scene) {
-  double lowest = std::numeric_limits<double>::infinity();
+template <class Visit>
+void for_visible_corners(const Scene& scene, const Visit& visit) {
   for (const PlacedNode& placed : placed_nodes(scene)) {
     if (!placed.visible || !placed.node->object) continue;
     for (const TextureSet& set : placed.node->object->sets)
       for (const Face& face : set.soup.faces())
-        for (const std::uint32_t vertex : face)
-          if (const double y = (placed.to_world * set.soup.positions()[vertex]).y(); y < lowest) lowest = y;
+        for (const std::uint32_t vertex : face) visit(placed.to_world * set.soup.positions()[vertex]);
   }
+}
+
+}  // namespace
+
+Box subtree_bounds(const Scene& scene, NodeId id) { return world_bounds(subtree(scene, id)); }
+
+Box triangle_bounds(const Scene& scene, NodeId id) {
+  Box box;
+  for_visible_corners(subtree(scene, id), [&](const Vec3& corner) { box.extend(corner); });
+  return box;
+}
+
+double lowest_visible(const Scene& scene) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for_visible_corners(scene, [&](const Vec3& corner) {
+    if (corner.y() < lowest) lowest = corner.y();
+  });
   return lowest;
 }
 

@@ -56,8 +56,11 @@ TreePosition place_of(const Scene& scene, NodeId id);
 /// Throws EditError if a node is missing.
 Scene with_only(const Scene& scene, const std::vector<NodeRef>& nodes);
 
-/// World box of the triangles of a node and its children; hidden children do not count.
+/// A world box around a node and its children, from the boxes of their objects: quick, and too large for rotated
+/// nodes. Hidden children do not count.
 Box subtree_bounds(const Scene& scene, NodeId id);
+/// The world box of the triangles of a node and its children; hidden children do not count.
+Box triangle_bounds(const Scene& scene, NodeId id);
 /// Least world y of the triangles of visible nodes; infinity if there are none.
 double lowest_visible(const Scene& scene);
 /// World box of a node's selected triangles.

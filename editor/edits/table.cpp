@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+
 #include <nlohmann/json.hpp>
 
 #include "editor/edits/describe_edit.h"
@@ -115,32 +118,41 @@ void add_notes_of_bends(const Node& before, const Node& after, std::vector<std::
   }
 }
 
-bool is_inside(const Scene& scene, NodeId node, NodeId group) {
-  for (NodeId up = parent_of(scene, node); up != NodeId::none; up = parent_of(scene, up))
-    if (up == group) return true;
-  return false;
+// The nodes of a scene by id, with their parents.
+struct NodeInTree {
+  PlacedNode placed;
+  NodeId parent = NodeId::none;
+};
+using Tree = std::map<NodeId, NodeInTree>;
+Tree tree_of(const Scene& scene) {
+  Tree tree;
+  for (PlacedNode& placed : placed_nodes(scene)) tree[placed.node->id].placed = std::move(placed);
+  for (auto& [id, one] : tree)
+    for (const NodePtr& child : one.placed.node->children) tree.at(child->id).parent = id;
+  return tree;
 }
 
-// The groups in `scene` that move a node by keyframes of their place.
-std::vector<NodePtr> moving_groups_of(const Scene& scene, NodeId node) {
+// The nodes above a node, the nearest one first.
+std::vector<NodePtr> above(const Tree& tree, NodeId node) {
   std::vector<NodePtr> groups;
-  for (NodeId up = parent_of(scene, node); up != NodeId::none; up = parent_of(scene, up))
-    if (const NodePtr group = find(scene, up); group->motion && !group->motion->place.empty()) groups.push_back(group);
+  for (NodeId up = tree.at(node).parent; up != NodeId::none; up = tree.at(up).parent)
+    groups.push_back(tree.at(up).placed.node);
   return groups;
 }
 
-// Notes of groups with keyframes that the node has left or entered.
-void add_notes_of_groups(const Scene& before, const Scene& after, const NodePtr& node,
-                         std::vector<std::string>& lines) {
-  for (const NodePtr& group : moving_groups_of(before, node->id))
-    if (!is_inside(after, node->id, group->id) && find(after, group->id))
-      lines.push_back(fmt::format("note: films no longer move \"{}\" by the keyframes of \"{}\", which it has left",
-                                  node->name, group->name));
-  for (const NodePtr& group : moving_groups_of(after, node->id))
-    if (!is_inside(before, node->id, group->id) && find(before, group->id))
-      lines.push_back(
-          fmt::format("note: films move \"{}\" by the keyframes of \"{}\" from now on, which it has entered",
-                      node->name, group->name));
+// Notes of groups with keyframes that a node has left or entered.
+void add_notes_of_groups(const Tree& before, const Tree& after, const NodePtr& node, std::vector<std::string>& lines) {
+  const auto compare = [&](const Tree& here, const Tree& there, const char* note) {
+    const std::vector<NodePtr> others = above(there, node->id);
+    for (const NodePtr& group : above(here, node->id)) {
+      const bool moves = group->motion && !group->motion->place.empty();
+      const auto same = [&](const NodePtr& other) { return other->id == group->id; };
+      if (moves && there.contains(group->id) && std::none_of(others.begin(), others.end(), same))
+        lines.push_back(fmt::format(fmt::runtime(note), node->name, group->name));
+    }
+  };
+  compare(before, after, "note: films no longer move \"{}\" by the keyframes of \"{}\", which it has left");
+  compare(after, before, "note: films move \"{}\" by the keyframes of \"{}\" from now on, which it has entered");
 }
 
 // Notes of what another parent changes although the place in the world stays.
@@ -161,28 +173,27 @@ void add_notes_of_parent(const PlacedNode& before, const PlacedNode& after, std:
 Outcome carry_out(const Scene& scene, const Edit& edit, const Progress& progress) {
   Outcome outcome = edit.type().apply(scene, edit.value(), progress);
   std::vector<std::string> lines;
+  const Tree before = tree_of(scene), after = tree_of(outcome.scene);
   // Notes that a named node is hidden, because the change is then invisible.
   for (const NodeId id : edit.type().named_nodes(edit.value()))
-    if (const auto before = find_placed(scene, id); before && !before->visible)
-      if (const auto placed = find_placed(outcome.scene, id); placed && !placed->visible)
-        lines.push_back(fmt::format("note: \"{}\" is hidden", placed->node->name));
-  // Films follow keyframes, not the place that an edit gave.
+    if (before.contains(id) && after.contains(id) && !before.at(id).placed.visible && !after.at(id).placed.visible)
+      lines.push_back(fmt::format("note: \"{}\" is hidden", after.at(id).placed.node->name));
+  // In the order of the outline.
   for (const PlacedNode& placed : placed_nodes(outcome.scene)) {
-    if (!placed.node->motion || placed.node->motion->place.empty()) continue;
-    const NodePtr before = find(scene, placed.node->id);
-    if (before && before->motion == placed.node->motion &&
-        before->to_parent.matrix() != placed.node->to_parent.matrix())
+    const auto found = before.find(placed.node->id);
+    if (found == before.end()) continue;
+    const Node& was = *found->second.placed.node;
+    // Films follow keyframes, not the place that an edit gave.
+    if (placed.node->motion && !placed.node->motion->place.empty() && was.motion == placed.node->motion &&
+        was.to_parent.matrix() != placed.node->to_parent.matrix())
       lines.push_back(fmt::format("note: films still move \"{}\" by its keyframes; set one (key) to move it there too",
                                   placed.node->name));
+    if (found->second.parent != after.at(placed.node->id).parent) {
+      add_notes_of_groups(before, after, placed.node, lines);
+      add_notes_of_parent(found->second.placed, placed, lines);
+    }
+    add_notes_of_bends(was, *placed.node, lines);
   }
-  for (const PlacedNode& placed : placed_nodes(outcome.scene)) {
-    const auto before = find_placed(scene, placed.node->id);
-    if (before && placed.node->object) add_notes_of_groups(scene, outcome.scene, placed.node, lines);
-    if (before && parent_of(scene, placed.node->id) != parent_of(outcome.scene, placed.node->id))
-      add_notes_of_parent(*before, placed, lines);
-  }
-  for (const PlacedNode& placed : placed_nodes(outcome.scene))
-    if (const NodePtr before = find(scene, placed.node->id)) add_notes_of_bends(*before, *placed.node, lines);
   if (edit.type().selects) lines.push_back(selected_line(edit.type().op, outcome.scene));
   for (std::string& line : outcome.report.lines) line.insert(0, std::string(edit.type().op) + ": ");
   outcome.report.lines.insert(outcome.report.lines.begin(), lines.begin(), lines.end());

@@ -96,6 +96,13 @@ std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json
   return pictures;
 }
 
+// Before pictures are removed: someone may have put one of their own under such a name.
+void refuse_foreign(const std::vector<fs::path>& pictures) {
+  for (const fs::path& picture : pictures)
+    if (is_picture_file(picture) && !is_rendered_picture(picture))
+      throw FileError(picture, "was not rendered by Rebake, so it is not removed; move it elsewhere");
+}
+
 }  // namespace
 
 std::uint64_t picture_hash(const Scene& scene, const Progress& progress) {
@@ -157,6 +164,7 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
       throw FileError(folder_,
                       "holds pictures of another film: the scene, the way or the options differ; choose another "
                       "folder, or remove this one first");
+    refuse_foreign(pictures);
     for (const fs::path& picture : pictures) {
       sources.check_file(picture);
       remove_file(picture);
@@ -186,6 +194,7 @@ void PictureFolder::lock() {
 
 void PictureFolder::remove() const {
   const std::vector<fs::path> pictures = film_pictures(folder_, record_in(folder_));
+  refuse_foreign(pictures);
   for (const fs::path& picture : pictures) remove_file(picture);
   remove_file(folder_ / record);
   std::error_code error;

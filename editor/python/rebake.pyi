@@ -377,7 +377,7 @@ class Document:
         node: node to place
         position: position of its origin; default: unchanged (scene units)
         rotation: rotation relative to its parent; default: unchanged
-        scale: factors along its own axes; negative values mirror, 0 is refused; default: unchanged. A mirrored node counts as mirrored along the axis, or all three, that leaves the smallest rotation
+        scale: factors along its own axes; negative values mirror, 0 is refused; default: unchanged. A mirrored node counts as mirrored along the axis, or all three, that leaves the smallest rotation; give scale and rotation together to be sure
         """
     def drop(self, *, node: Node, ground: float | None = None) -> None:
         """Lets a node fall onto the visible surface below it, or onto the scene's ground plane. A node that intersects something is lifted out of it first.

@@ -5,10 +5,9 @@
 #include <limits>
 
 #include "editor/actions/views.h"
+#include "mesh_ops/features/distill/fuse_errors.h"
 
 namespace rebake {
-
-double psnr_of(double mean_squared_error) { return -10 * std::log10(std::max(mean_squared_error, 1e-10)); }
 
 namespace {
 

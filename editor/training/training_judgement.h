@@ -7,9 +7,6 @@
 
 namespace rebake {
 
-/// PSNR in dB of a mean squared error of colours in [0, 1], at most 100.
-double psnr_of(double mean_squared_error);
-
 /// Mean errors over held-out photographs.
 struct MeanErrors {
   double psnr_db = 0, ssim = 0, flip = 0;

@@ -156,7 +156,7 @@ std::vector<TriangleTraits> triangle_traits(const BakedObject& object,
       one.features = look.features;
       one.color = look.color;
       one.opacity = look.opacity;
-      one.area = static_cast<float>(cross.norm() / 2);
+      one.area = cross.norm() / 2;
       const Vec3 normal = cross.stableNormalized();
       for (int k = 0; k < 3; ++k) one.normal[static_cast<std::size_t>(k)] = static_cast<float>(normal[k]);
     });

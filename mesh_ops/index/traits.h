@@ -15,7 +15,7 @@ struct TriangleTraits {
   /// Share of opaque texels among those whose centres are inside; if that is 0, share of the area that opaque texels
   /// cover. 0 if that is below a millionth.
   float opacity = 0;
-  float area = 0;                 ///< in square object units
+  double area = 0;                ///< in square object units
   std::array<float, 3> normal{};  ///< unit vector, or zero if the triangle has no area
 };
 

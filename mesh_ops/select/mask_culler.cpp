@@ -42,7 +42,7 @@ void MaskCuller::look_at(const BakedObject& object, const Affine& to_world) {
     corner = {to_object * corner.origin, (to_object.linear() * corner.direction).normalized()};
   for (std::size_t k = 0; k < 4; ++k) {
     const ViewRay &a = corners[k], &b = corners[(k + 1) % 4], &across = corners[(k + 2) % 4];
-    Vec3 normal = a.direction.cross(b.origin + b.direction - a.origin);
+    Vec3 normal = a.direction.cross(b.origin - a.origin + b.direction);
     // The rays are too close: rounding would rotate the plane by more than a pixel.
     constexpr double min_sine = 1e-6;
     if (!(normal.norm() > min_sine)) {
@@ -50,7 +50,7 @@ void MaskCuller::look_at(const BakedObject& object, const Affine& to_world) {
       continue;
     }
     normal.normalize();
-    if (normal.dot(across.origin + across.direction - a.origin) < 0) normal = -normal;
+    if (normal.dot(across.origin - a.origin + across.direction) < 0) normal = -normal;
     sides_[k] = {normal, normal.dot(a.origin)};
   }
 }

@@ -53,7 +53,7 @@ Scene apply(const Scene& scene, const Align& edit) {
     for (NodeId above = parent_of(scene, node.id); above != NodeId::none; above = parent_of(scene, above))
       if (std::any_of(edit.nodes.begin(), edit.nodes.end(), [&](const NodeRef& other) { return other.id == above; }))
         throw FieldError("nodes", "must not contain a node and a group above it");
-    const Box box = subtree_bounds(scene, editable_with_children(scene, node.id).node->id);
+    const Box box = triangle_bounds(scene, editable_with_children(scene, node.id).node->id);
     if (box.isEmpty()) throw FieldError("nodes", "must name nodes with triangles");
     list.push_back({node, box.min()[axis], box.max()[axis]});
   }

@@ -66,10 +66,12 @@ REBAKE_DESCRIBE_EDIT(
       visit("node", edit.node, Need::required, "node to place");
       visit("position", edit.position, Need::optional, "position of its origin; default: unchanged", Unit::length);
       visit("rotation", edit.rotation, Need::optional, "rotation relative to its parent; default: unchanged");
-      visit("scale", edit.scale, Need::optional,
-            "factors along its own axes; negative values mirror, 0 is refused; default: unchanged. A mirrored node "
-            "counts as "
-            "mirrored along the axis, or all three, that leaves the smallest rotation");
+      visit(
+          "scale", edit.scale, Need::optional,
+          "factors along its own axes; negative values mirror, 0 is refused; default: unchanged. A mirrored node "
+          "counts as "
+          "mirrored along the axis, or all three, that leaves the smallest rotation; give scale and rotation together "
+          "to be sure");
     })
 
 }  // namespace rebake

@@ -22,7 +22,7 @@ Scene apply(const Scene& scene, const Transform& edit) {
   const PlacedNode placed = editable_with_children(scene, edit.node.id);
   Box box;
   if (!edit.selection) {
-    box = subtree_bounds(scene, edit.node.id);
+    box = triangle_bounds(scene, edit.node.id);
   } else {
     box = selection_bounds(object_with_selection(scene, edit.node));
   }

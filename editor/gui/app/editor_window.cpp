@@ -225,7 +225,7 @@ class EditorWindow {
       editor_.dialogs.palette = editor_.dialogs.keys = false;
     } else if (editor_.jobs.film) {
       editor_.messages.say(editor_.jobs.film->stopped());
-      editor_.jobs.film.reset();
+      editor_.jobs.end_film();
     } else if (viewport().tool(editor_).busy() && viewport().cancel(editor_)) {
       return;
     } else if (!editor_.dialogs.form.empty()) {
@@ -235,7 +235,7 @@ class EditorWindow {
     } else if (viewport().cancel(editor_) || editor_.messages.close_failures()) {
       return;
     } else if (editor_.jobs.worker.busy()) {
-      editor_.cancel_jobs();
+      editor_.jobs.worker.cancel();
     } else if (editor_.tools.kind != ToolKind::pick) {
       editor_.tools.kind = ToolKind::pick;
     } else {

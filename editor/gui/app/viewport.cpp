@@ -350,12 +350,11 @@ void Viewport::write_pictures(EditorContext& editor) {
           editor.now->sources);
       if (!said.empty()) {
         editor.messages.say(said);
-        editor.jobs.film.reset();
-        editor.jobs.film_shows = {};
+        editor.jobs.end_film();
       }
     }
   } catch (const std::exception& error) {
-    editor.jobs.film.reset();
+    editor.jobs.end_film();
     editor.messages.fail(error.what());
   }
 }
@@ -413,9 +412,10 @@ void Viewport::move_camera(EditorContext& editor, const Pointer& pointer) {
 
 void Viewport::use_tool(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   try {
-    const bool may_start =
-        !editor.has_waiting_commands() && (!editor.jobs.worker.busy() || !tool(editor).needs_current_scene());
-    if (may_start || tool(editor).busy())
+    // Nodes of another document have the same numbers.
+    if (std::exchange(tool_document_, editor.now->document) != editor.now->document) tool(editor).cancel(editor);
+    const bool rests = editor.at_rest() && !editor.jobs.worker.busy();
+    if (rests || !tool(editor).needs_current_scene() || tool(editor).busy())
       tool(editor).pointer(editor, lens, pointer);
     else if (pointer.pressed && pointer.inside)
       editor.messages.say("A job is still running. Click again when it has finished, or press Esc to cancel it.");

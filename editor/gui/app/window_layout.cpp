@@ -288,7 +288,7 @@ void WindowLayout::status() {
     ImGui::Text("%s (Esc cancels)", editor_.jobs.film->doing().c_str());
   } else if (editor_.jobs.worker.busy()) {
     const Worker::Status now = editor_.jobs.worker.status();
-    if (ui::quiet_icon(icons::close, "Cancel")) editor_.cancel_jobs();
+    if (ui::quiet_icon(icons::close, "Cancel")) editor_.jobs.worker.cancel();
     ui::tip("Cancel", "Esc");
     ImGui::SameLine();
     ImGui::ProgressBar(static_cast<float>(now.share), {px(160), px(6)}, "");

@@ -111,10 +111,13 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
       if (selected.empty()) throw EditError("nothing is selected");
       return selected;
     }
-    // Nothing is picked, but the edit needs a node: use the first visible object.
+    // Nothing is picked, but the edit needs a node: the only visible object.
+    std::vector<json> visible;
     for (const PlacedNode& placed : placed_nodes(editor.scene()))
-      if (placed.visible && placed.node->object) return {with_node(placed.node->id)};
-    throw EditError("the scene has no visible object");
+      if (placed.visible && placed.node->object) visible.push_back(with_node(placed.node->id));
+    if (visible.empty()) throw EditError("the scene has no visible object");
+    if (visible.size() > 1) throw EditError("nothing is picked: pick a node");
+    return visible;
   }
   std::vector<json> result;
   if (node->required && !selection)

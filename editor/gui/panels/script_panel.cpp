@@ -32,7 +32,7 @@ void ScriptPanel::draw(DocumentEditor& editor, DialogState& dialogs) {
       if (const Edit* edit = std::get_if<Edit>(&command))
         editor.edit(*edit);
       else
-        editor.jobs.worker.start("script line", std::get<Action>(command));
+        editor.jobs.worker.start_change("script line", std::get<Action>(command));
       line_.clear();
       problem_.clear();
     } catch (const nlohmann::json::exception& error) {

@@ -237,25 +237,21 @@ void store_view(ToolContext& editor, const std::string& name) {
 }
 
 void run_command(EditorContext& editor, const Command& command) {
-  const auto run = [&editor, &command] {
-    if (command.enabled(editor))
-      command.run(editor);
-    else
-      editor.messages.say(std::string(command.title) +
-                          ": not available now. Open a scene, pick nodes or select triangles first.");
-  };
-  if (command.in_turn)
-    editor.when_at_rest(run);
+  const std::string title = command.title;
+  if (command.needs_rest && !editor.unchanging())
+    editor.messages.say(title +
+                        ": another step is still running. Try again when it has finished, or press Esc to cancel it.");
+  else if (!command.enabled(editor))
+    editor.messages.say(title + ": not available now. Open a scene, pick nodes or select triangles first.");
   else
-    run();
+    command.run(editor);
 }
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
       {"File", "Open...", "Ctrl+O", "Ctrl+O", "Opens a scene, a textured mesh or a project.", always,
        ask<FileDialogPurpose::open>},
-      {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_steps, save, nullptr,
-       false, true},
+      {"File", "Save project", "Ctrl+S", "Ctrl+S", "Saves every step to a .rebake file.", has_steps, save},
       {"File", "Save project as...", "Ctrl+Shift+S", "Ctrl+Shift+S", "Saves every step to another file.", has_steps,
        ask<FileDialogPurpose::save_project>},
       {"File", "Save Rebake scene...", "", "", "Writes the current scene to a folder, without its history.", has_scene,
@@ -282,9 +278,9 @@ const std::vector<Command>& command_table() {
       {"File", "Quit", "Ctrl+Q", "Ctrl+Q", "Closes the window. Asks first if there is unsaved work.", always,
        [](EditorContext& editor) { editor.dialogs.quitting = true; }},
       {"Edit", "Undo", "Ctrl+Z", "Ctrl+Z", "Undoes the last step.",
-       [](const EditorContext& editor) { return !editor.now->done.empty(); }, undo, nullptr, true, true},
+       [](const EditorContext& editor) { return !editor.now->done.empty(); }, undo, nullptr, true},
       {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", "Ctrl+Shift+Z", "Redoes the last undone step.",
-       [](const EditorContext& editor) { return !editor.now->undone.empty(); }, redo, nullptr, true, true},
+       [](const EditorContext& editor) { return !editor.now->undone.empty(); }, redo, nullptr, true},
       {"Edit", "Command palette...", "Ctrl+P", "F3 Ctrl+P", "Finds any command or edit by name.", always,
        [](EditorContext& editor) { editor.dialogs.palette = true; }},
       {"Edit", "Delete", "Delete", "X Delete",

@@ -22,7 +22,7 @@ struct Command {
   void (*run)(EditorContext& editor);
   bool (*checked)(const EditorContext& editor) = nullptr;  ///< state of a toggle; null for other commands
   bool repeats = false;                                    ///< runs repeatedly while its key is held
-  bool in_turn = false;  ///< works on picks, selection or history: waits until no job is running
+  bool needs_rest = false;  ///< works on picks or the selection: refused while a job runs that may change them
 
   /// Keys in the current keymap.
   const char* keys_of(const Settings& settings) const { return settings.blender_keys ? blender_keys : keys; }
@@ -36,7 +36,7 @@ struct Command {
 /// All commands, in menu order.
 const std::vector<Command>& command_table();
 
-/// Runs a command if it is available, otherwise says that it is not; one that works `in_turn` waits for running jobs.
+/// Runs a command if it is available, otherwise says why it is not.
 void run_command(EditorContext& editor, const Command& command);
 
 /// Parses a key with modifiers, e.g. "Ctrl+Shift+A", "[", "KP_1"; nothing if the text is not valid.

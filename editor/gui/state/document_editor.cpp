@@ -46,12 +46,12 @@ Scene DocumentEditor::shown() const {
 
 bool DocumentEditor::take_news() {
   at_rest_ = !jobs.worker.busy();
+  unchanging_ = !jobs.worker.changes();
   std::vector<Worker::Message> news = jobs.worker.take_messages();
   for (Worker::Message& message : news) {
     switch (message.kind) {
       case Worker::Message::Kind::failed:
         messages.fail(std::move(message.text));
-        drop_waiting("the job before them failed");
         break;
       case Worker::Message::Kind::reported:
         messages.note(std::move(message.text));
@@ -76,7 +76,6 @@ bool DocumentEditor::take_news() {
   if ((other && preview && preview->of != next->scene.roots) || other_document) drop_preview();
   // Nodes of another document have the same numbers.
   if (other_document) active.clear();
-  if (other_document) drop_waiting("another document was opened");
   std::erase_if(active, [&](NodeId id) { return find(scene(), id) == nullptr; });
   if (made_more) pick_new(placed_nodes(*now->before_last));
   selected_.clear();
@@ -87,23 +86,6 @@ bool DocumentEditor::take_news() {
   return true;
 }
 
-void DocumentEditor::when_at_rest(std::function<void()> command) {
-  if (waiting_.empty() && at_rest_ && !jobs.worker.busy())
-    command();
-  else
-    waiting_.push_back(std::move(command));
-}
-
-void DocumentEditor::drop_waiting(const char* why) {
-  if (!std::exchange(waiting_, {}).empty())
-    messages.say(fmt::format("Commands that waited were dropped, because {}.", why));
-}
-
-void DocumentEditor::cancel_jobs() {
-  jobs.worker.cancel();
-  waiting_.clear();
-}
-
 void DocumentEditor::call_finished() {
   for (const std::function<void()>& then : std::exchange(finished_, {})) {
     try {
@@ -111,11 +93,6 @@ void DocumentEditor::call_finished() {
     } catch (const std::exception& problem) {
       messages.fail(problem.what());
     }
-  }
-  while (!waiting_.empty() && at_rest_ && !jobs.worker.busy()) {
-    const std::function<void()> command = std::move(waiting_.front());
-    waiting_.pop_front();
-    command();
   }
   if (std::optional<Preview> made = previews.take(); made && made->of == scene().roots) preview = std::move(made);
 }
@@ -173,14 +150,14 @@ void DocumentEditor::edit(const Edit& one) { edits({one}); }
 
 void DocumentEditor::change(std::string title, Worker::Job job, std::function<void()> then,
                             std::function<void()> otherwise) {
-  at_rest_ = false;
+  at_rest_ = unchanging_ = false;
   const auto ending = [this, shown = previews.requests()](std::function<void()> after) {
     return [this, shown, after = std::move(after)] {
       end_preview(shown);  // also after a failure
       if (after) after();
     };
   };
-  jobs.worker.start(std::move(title), std::move(job), ending(std::move(then)), ending(std::move(otherwise)));
+  jobs.worker.start_change(std::move(title), std::move(job), ending(std::move(then)), ending(std::move(otherwise)));
 }
 
 void DocumentEditor::edits(const std::vector<Edit>& list, std::function<void()> then, std::function<void()> otherwise) {
@@ -284,9 +261,9 @@ void DocumentEditor::undo(int steps) { move_in_history(steps, undo_step_in, "Und
 void DocumentEditor::redo(int steps) { move_in_history(steps, redo_step_in, "Redid: "); }
 
 void DocumentEditor::move_in_history(int steps, void (*step)(Session&, StepsMade&), const char* did) {
-  at_rest_ = false;
+  at_rest_ = unchanging_ = false;
   const auto made = std::make_shared<StepsMade>();
-  jobs.worker.start(
+  jobs.worker.start_change(
       step == undo_step_in ? "undo" : "redo",
       [steps, step, made](Session& session) {
         for (int before = -1; made->count < steps && before != made->count; step(session, *made)) before = made->count;
@@ -306,10 +283,10 @@ void DocumentEditor::go_to(std::size_t steps) {
     last.push_back(now->steps[k].last);
     edits.push_back(edits.back() + now->steps[k].edits);
   }
-  at_rest_ = false;
+  at_rest_ = unchanging_ = false;
   const bool undoes = steps < now->steps_done;
   const auto made = std::make_shared<StepsMade>();
-  jobs.worker.start(
+  jobs.worker.start_change(
       undoes ? "undo" : "redo",
       [last, edits, made](Session& session) {
         const History& history = session.document.history();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <future>
 #include <map>
@@ -50,15 +49,10 @@ struct DocumentEditor {
   /// The scene that the viewport draws: the preview, if it belongs to the current scene, and `beside`.
   Scene shown() const;
 
-  /// Calls `command` now, or after all running and waiting jobs, which may change picks and selections. It is
-  /// dropped, with a message, if one of them fails or opens another document. Commands keep their order.
-  void when_at_rest(std::function<void()> command);
-  bool has_waiting_commands() const { return !waiting_.empty(); }
-  /// Cancels the running job, and drops the waiting ones and the waiting commands.
-  void cancel_jobs();
-
   /// Whether no job was running or waiting when `now` was fetched, so that it equals the document.
   bool at_rest() const { return at_rest_; }
+  /// Whether no job was running or waiting when `now` was fetched, or is now, that changes the document or the picks.
+  bool unchanging() const { return unchanging_ && !jobs.worker.changes(); }
 
   /// Applies an edit of triangles to each node of scope(), as one step. T has a field `node`.
   template <class T>
@@ -164,8 +158,6 @@ struct DocumentEditor {
   using Replace = void (Session::*)(const std::vector<Edit>&, const AppliedEdits*);
   void replace_last(Replace how, const std::vector<Edit>& list, std::function<void()> then,
                     std::function<void()> otherwise);
-  /// Drops the waiting commands, and says why if there are any.
-  void drop_waiting(const char* why);
   /// Removes the preview of an ended job; `shown`: previews.requests() at the job's start. Newer requests go on.
   void end_preview(std::size_t shown);
   /// A requested preview: its edits, and their result when computed. The result is null if the edits failed.
@@ -189,9 +181,8 @@ struct DocumentEditor {
   /// Whether it is in a picked node, or nothing is picked.
   static bool is_picked(const std::set<NodeId>& picks, const Scene& in, NodeId node);
   std::map<NodeId, std::size_t> selected_;  ///< number of selected triangles per node, without zeros
-  bool at_rest_ = false;
+  bool at_rest_ = false, unchanging_ = false;
   std::vector<std::function<void()>> finished_;  ///< callbacks of ended jobs
-  std::deque<std::function<void()>> waiting_;    ///< commands, see when_at_rest()
 };
 
 }  // namespace rebake

@@ -108,7 +108,7 @@ void Project::open(const std::vector<std::string>& paths, bool wanted, const Imp
   for (const std::string& source : paths) {
     Import import = options;
     import.path = source;
-    worker_.start(
+    worker_.start_change(
         "import",
         [import](Session& session) {
           // The first import sets the ground plane at its lowest point.
@@ -123,7 +123,7 @@ void Project::open(const std::vector<std::string>& paths, bool wanted, const Imp
 void Project::open_project(const fs::path& file, const SourceLinks& links, bool keeps) {
   auto gone = std::make_shared<std::vector<SourcesUnavailable::Source>>();
   auto read = std::make_shared<Scene>();  // later jobs may have changed the document before the window knows it
-  worker_.start(
+  worker_.start_change(
       "open",
       [file, links, gone, read, keeps, asked = now_->scene](Session& session) {
         try {
@@ -157,7 +157,7 @@ void Project::open_project(const fs::path& file, const SourceLinks& links, bool 
 void Project::recover(const fs::path& journal, const SourceLinks& links, bool go_on_without) {
   auto gone = std::make_shared<std::vector<SourcesUnavailable::Source>>();
   auto problem = std::make_shared<std::string>();
-  worker_.start(
+  worker_.start_change(
       "recover",
       [journal, links, gone, problem, go_on_without, was_unsaved = unsaved(), asked = now_->scene](Session& session) {
         Document::Recovered recovered = Document::recover(journal, links, session.progress);
@@ -272,6 +272,23 @@ void Project::publish(const fs::path& file, const Camera& camera) {
       [file] { open_in_default_program(file); });
 }
 
+namespace {
+
+// States the name of the node that a line makes, if it makes one: later lines name it so, and imports of other folders
+// would get other names.
+void name_made_node(nlohmann::json& line, const Scene& before, const Scene& after) {
+  if (!line.contains("as") || line.at("as") != "") return;
+  std::vector<std::string> made;
+  for (const PlacedNode& placed : placed_nodes(after)) {
+    const NodeId parent = parent_of(after, placed.node->id);
+    if (!find(before, placed.node->id) && (parent == NodeId::none || find(before, parent)))
+      made.push_back(placed.node->name);
+  }
+  if (made.size() == 1) line["as"] = made.front();
+}
+
+}  // namespace
+
 void Project::save_script(const fs::path& file) {
   worker_.start("save script", [file](Session& session) {
     refuse_replacing_other_than_script(file);
@@ -282,9 +299,14 @@ void Project::save_script(const fs::path& file) {
     const std::vector<std::size_t> before = history.edits_before();
     for (std::size_t k = 0; k < edits.size(); ++k) {
       // Nodes by name, because other scenes have other numbers.
-      const bool names = !edits[k].type().named_nodes(edits[k].value()).empty();
-      const nlohmann::json line =
-          names ? to_json_with_names(edits[k], history.scene_at(before[k], session.progress)) : to_json(edits[k]);
+      const bool names = !edits[k].type().named_nodes(edits[k].value()).empty(), makes = edits[k].type().makes_nodes;
+      nlohmann::json line = to_json(edits[k]);
+      if (names || makes) {
+        const Scene scene = history.scene_at(before[k], session.progress);
+        line = to_json_with_names(edits[k], scene);
+        const std::size_t next = k + 1 < edits.size() ? before[k + 1] : history.undo_count();
+        if (makes) name_made_node(line, scene, history.scene_at(next, session.progress));
+      }
       text += line.dump() + "\n";
       try {
         braces = braces || with_variables(line, {}) != line;
@@ -300,7 +322,7 @@ void Project::save_script(const fs::path& file) {
 }
 
 void Project::run_script(const fs::path& file) {
-  worker_.start("script", [file](Session& session) {
+  worker_.start_change("script", [file](Session& session) {
     const std::string script = read_input(file);
     // Only while it runs.
     const SourceGuard before = session.document.protections();

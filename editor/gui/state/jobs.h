@@ -34,6 +34,10 @@ struct Jobs {
   std::optional<Screenshot> screenshot;  ///< screenshot to be written in the next frame
   std::optional<CameraAnimation> film;   ///< running animation job
   Rendered film_shows;                   ///< the scene and nodes when it was started
+  void end_film() {
+    film.reset();
+    film_shows = {};
+  }
 
   /// Measured time and error of rendering choices, for one view of one scene.
   struct Costs {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <new>
@@ -56,10 +57,21 @@ Worker::~Worker() {
 }
 
 void Worker::start(std::string title, Job job, std::function<void()> then, std::function<void()> otherwise, On on) {
+  add({std::move(title), std::move(job), std::move(then), std::move(otherwise),
+       on == On::seen_document ? std::optional<std::uint64_t>(0) : std::nullopt, false});
+}
+
+void Worker::start_change(std::string title, Job job, std::function<void()> then, std::function<void()> otherwise,
+                          On on) {
+  add({std::move(title), std::move(job), std::move(then), std::move(otherwise),
+       on == On::seen_document ? std::optional<std::uint64_t>(0) : std::nullopt, true});
+}
+
+void Worker::add(Waiting job) {
   {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back({std::move(title), std::move(job), std::move(then), std::move(otherwise),
-                        on == On::seen_document ? std::optional(seen_document_) : std::nullopt});
+    if (job.document) job.document = seen_document_;
+    waiting_.push_back(std::move(job));
   }
   changed_.notify_all();
 }
@@ -72,6 +84,12 @@ void Worker::saw(const Snapshot& snapshot) {
 bool Worker::busy() const {
   const std::lock_guard lock(mutex_);
   return running_ || !waiting_.empty();
+}
+
+bool Worker::changes() const {
+  const std::lock_guard lock(mutex_);
+  return (running_ && running_changes_) ||
+         std::any_of(waiting_.begin(), waiting_.end(), [](const Waiting& job) { return job.changes; });
 }
 
 void Worker::cancel() {
@@ -188,6 +206,7 @@ void Worker::loop() {
       next = std::move(waiting_.front());
       waiting_.pop_front();
       running_ = true;
+      running_changes_ = next.changes;
       cancel_ = false;
       status_.title = next.title;
     }

@@ -54,10 +54,15 @@ class Worker {
   /// before it began). `title` is shown during the job and in errors.
   void start(std::string title, Job job, std::function<void()> then = {}, std::function<void()> otherwise = {},
              On on = On::seen_document);
+  /// As start(), for jobs that change the document, or whose callbacks change picks.
+  void start_change(std::string title, Job job, std::function<void()> then = {}, std::function<void()> otherwise = {},
+                    On on = On::seen_document);
   /// The window shows this snapshot from now on.
   void saw(const Snapshot& snapshot);
   /// Whether a job is running or waiting.
   bool busy() const;
+  /// Whether a job of start_change() is running or waiting.
+  bool changes() const;
   /// Cancels the running job and removes the waiting ones.
   void cancel();
   /// `prepare` is called on the background thread with each scene before snapshot() returns it; null for none.
@@ -101,10 +106,12 @@ class Worker {
     Job job;
     std::function<void()> then, otherwise;
     std::optional<std::uint64_t> document;  ///< number of the only document on which it may run; nothing: any
+    bool changes = false;
   };
+  void add(Waiting job);
   std::uint64_t seen_document_ = 0;
   std::deque<Waiting> waiting_;
-  bool running_ = false, ending_ = false;
+  bool running_ = false, running_changes_ = false, ending_ = false;
   std::atomic<bool> cancel_ = false, drops_renderer_ = false;
   Status status_;
   std::shared_ptr<const Snapshot> snapshot_ = std::make_shared<const Snapshot>();

@@ -63,7 +63,7 @@ void PickTool::pointer(ToolContext& editor, const ViewportProjection& lens, cons
   if (!click_.ends(pointer)) return;
   // On the worker's thread, since the first ray into an object builds its ray tree.
   auto picked = std::make_shared<std::optional<PickHit>>();
-  editor.jobs.worker.start(
+  editor.jobs.worker.start_change(
       "pick", [picked, lens, at = pointer.at](Session& session) { *picked = pick(session.scene(), lens, at); },
       [&editor, picked, pointer, floods = floods_, before = editor.active, taken = taken_] {
         // Nodes picked in the meantime are the newer wish, unless an earlier click picked them.

@@ -78,6 +78,12 @@ class Budget {
         passes, [&](const View& view) { return drawing.picture(view); }, [&] { write(volume); });
   }
   double minutes_of_measuring() const { return measuring_; }
+  /// Does something that is no part of the fit.
+  void do_apart(const std::function<void()>& work) {
+    const double start = processor_minutes();
+    work();
+    measuring_ += processor_minutes() - start;
+  }
 
  private:
   const StudyInput& input_;
@@ -161,6 +167,9 @@ void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth&
   FitCheckpoints checkpoints = interrupted_fit(sizes, fitted);
   if (checkpoints.start)
     input.say(fmt::format("{}, {}: goes on after {} passes", fitted.sample, fitted.name, checkpoints.start->passes));
+  // The files that it describes are about to change.
+  std::error_code error;
+  fs::remove(fitted.folder / "fit.json", error);
   std::vector<HeldOutView> views = truth.validation(fitted.folder.parent_path());
   const bool epochs = fitted.method == Method::mobilenerf;
   Budget budget(input, fitted, std::move(views), most_passes_of(sizes, fitted.method));
@@ -176,7 +185,7 @@ void fit(const StudyInput& input, const RepresentationSizes& sizes, SampleTruth&
     // Often enough that little is lost, and at the end of each doubling, whose result is then on disk.
     if (passes != fitted.passes && Clock::now() - kept < std::chrono::minutes(2)) return;
     fitted.minutes = minutes();
-    write_checkpoint(checkpoint_of(fitted), head_of(sizes, fitted, passes), state());
+    budget.do_apart([&] { write_checkpoint(checkpoint_of(fitted), head_of(sizes, fitted, passes), state()); });
     kept = Clock::now();
   };
   if (fitted.method == Method::snerg)

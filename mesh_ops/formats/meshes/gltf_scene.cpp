@@ -80,6 +80,7 @@ class GltfReader {
       const json& made = document_.element("scenes", scene);
       for (const json& node : made.value("nodes", json::array())) add_node(index(node), Affine::Identity(), 0);
     }
+    note_other_content();
     std::vector<std::string> assumptions;
     for (const std::string& one : skipped_) assumptions.push_back(one);
     assumptions.emplace_back("colours are drawn as they are, without light, and with nearest filtering");
@@ -94,12 +95,22 @@ class GltfReader {
     return value.get<std::size_t>();
   }
 
+  void note_other_content() {
+    for (const char* kind : {"animations", "cameras"})
+      if (!document_.elements(kind).empty()) skipped_.insert(fmt::format("{} are skipped", kind));
+    const json extensions = document_.root().value("extensions", json::object());
+    if (extensions.is_object() && extensions.contains("KHR_lights_punctual")) skipped_.insert("lights are skipped");
+    if (document_.elements("scenes").size() > 1) skipped_.insert("only the file's main scene is read");
+    if (nodes_with_mesh_ > 1) skipped_.insert("the nodes become one object, without their names and groups");
+  }
+
   void add_node(std::size_t number, const Affine& parent, int depth) {
     if (depth > deepest_node) document_.fail(fmt::format("nodes are nested deeper than {}", deepest_node));
     if (++visited_ > max_nodes) document_.fail(fmt::format("has more than {} nodes", max_nodes));
     const json& node = document_.element("nodes", number);
     const Affine to_world = parent * transform_of(document_, node);
     if (node.contains("skin")) skipped_.insert("skins are skipped: meshes stay in their rest pose");
+    nodes_with_mesh_ += node.contains("mesh") ? 1 : 0;
     if (node.contains("mesh"))
       for (const json& primitive :
            document_.element("meshes", document_.number(node, "mesh")).value("primitives", json::array()))
@@ -246,6 +257,7 @@ class GltfReader {
   std::vector<TexturedMesh> meshes_;
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> mesh_of_;  // by material and UV set
   std::set<std::string> skipped_;
+  std::size_t nodes_with_mesh_ = 0;
   std::map<std::size_t, std::shared_ptr<const ColorImage>> images_;
 };
 

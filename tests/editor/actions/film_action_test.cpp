@@ -134,6 +134,17 @@ TEST_F(FilmActionTest, KeepsThePicturesIfTheEncoderFails) {
   EXPECT_FALSE(fs::exists(at("a.mp4.pictures")));
 }
 
+// Someone may have put a picture of their own among those of a video that failed.
+TEST_F(FilmActionTest, PicturesOfOthersAmongThoseOfAVideoAreKept) {
+  encoder("exit 7");
+  expect_error(film(R"("out": "{here}/a.mp4")"), "ffmpeg failed with exit status 7");
+  const std::string mine = "\x89PNG of somebody";
+  write_text(at("a.mp4.pictures/00003.png"), mine);
+  encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");
+  expect_error(film(R"("out": "{here}/a.mp4", "samples": 1)"), "was not rendered by Rebake, so it is not removed");
+  EXPECT_EQ(read_file(at("a.mp4.pictures/00003.png")), mine);
+}
+
 // A folder of pictures that was asked for is never taken for the temporary pictures of a video.
 TEST_F(FilmActionTest, VideosDoNotRemovePicturesThatWereAskedFor) {
   encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");

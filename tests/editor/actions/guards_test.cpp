@@ -251,9 +251,32 @@ TEST_F(Guards, PicturesThatMaterialsNameAreProtectedEvenIfNotRead) {
   for (const std::string name : {"opacity.png", "the bumps.png", "n.png", "other.png"}) {
     write("obj/" + name, "\x89PNG of somebody");
     const bool is_named = name != "other.png";
-    EXPECT_EQ(program("render {}/obj/m.obj -o \"{}/obj/" + name + "\" --size 8x8"), is_named ? 1 : 0) << log();
-    EXPECT_EQ(read_file(path("obj/" + name)) == "\x89PNG of somebody", is_named) << name;
+    EXPECT_EQ(program("render {}/obj/m.obj -o \"{}/obj/" + name + "\" --size 8x8"), 1) << log();
+    EXPECT_EQ(read_file(path("obj/" + name)), "\x89PNG of somebody") << name;
+    EXPECT_EQ(log().find("was not made by Rebake") == std::string::npos, is_named) << log();
   }
+}
+
+// Pictures that no file names may be photographs, textures or maps all the same.
+TEST_F(Guards, PicturesOfOthersAreNotReplaced) {
+  for (const char* name : {"a.png", "b.jpg", "c.exr", "d.webp"}) {
+    write(name, "a picture of somebody");
+    EXPECT_EQ(program("render " REBAKE_SOURCE "/samples/scenes/kettle -o {}/" + std::string(name) + " --size 8x8"), 1)
+        << name;
+    EXPECT_EQ(read_file(path(name)), "a picture of somebody");
+    fs::remove(path(name));
+    for (int twice = 0; twice < 2; ++twice)
+      EXPECT_EQ(program("render " REBAKE_SOURCE "/samples/scenes/kettle -o {}/" + std::string(name) + " --size 8x8"), 0)
+          << log();
+  }
+  // Not even by a script that reads it later.
+  write("e.png", "a map of somebody");
+  write("s.jsonl", import_line() + fmt::format(R"({{"op": "render", "out": "{0}", "width": 8, "height": 8}}
+{{"op": "light", "source": "picture", "picture": "{0}"}}
+)",
+                                               path("e.png").string()));
+  EXPECT_EQ(program("run {}/s.jsonl"), 1);
+  EXPECT_EQ(read_file(path("e.png")), "a map of somebody");
 }
 
 // Writing to a symbolic link replaces the file it leads to.

@@ -224,7 +224,7 @@ TEST_F(Cli, PublishedPagesReplaceOnlyPages) {
     std::filesystem::remove(in("page/" + std::string(file)));
   }
   // A page or poster that someone has changed since.
-  for (const char* file : {"poster.png", "index.html"}) {
+  for (const char* file : {"poster.png", "index.html", "viewer/viewer.css", "scene.json"}) {
     EXPECT_EQ(rebake_run(publish + in("page") + " --poster").code, 0) << file;
     const std::string published = read_file(in("page/" + std::string(file)));
     write_text(in("page/" + std::string(file)), published + "<p>mine</p>");

@@ -107,6 +107,34 @@ TEST(SelectionProperty, RelativeBoxesIncludeTheirBoundary) {
   }
 }
 
+// Areas of very large and very small triangles.
+TEST(SelectionProperty, SizesDoNotDependOnTheScale) {
+  for (const double scale : {1e-40, 1e-23, 1.0, 1e19, 1e40}) {
+    BakedObject object =
+        triangle_with({Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, std::vector<bool>(texture_side * texture_side, true));
+    std::vector<Vec3> positions;
+    std::vector<Vec2> uvs;
+    std::vector<Face> faces;
+    for (std::uint32_t k = 0; k < 6; ++k) {
+      const double side = scale * std::exp2(0.5 * k);  // the areas double
+      for (const Vec3& p : {Vec3(0, 0, k * scale), Vec3(side, 0, k * scale), Vec3(0, side, k * scale)}) {
+        positions.push_back(p);
+        uvs.push_back(object.sets[0].soup.uvs()[0]);
+      }
+      faces.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+    }
+    object.sets[0].soup = Soup(positions, uvs, faces);
+    Node node;
+    node.object = std::make_shared<const BakedObject>(object);
+    const Scene scene = with_added({}, node, NodeId::none, 0);
+    const std::vector<PlacedNode> placed = placed_nodes(scene);
+    const TriangleAppearance model = mean_appearance(placed, {TriangleSet{0, 0, 1, 0, 0, 0}});
+    AppearanceBounds bounds;
+    bounds.size = 2.01;
+    EXPECT_EQ(triangles_like(placed[0], model, bounds), (TriangleSet{0, 1, 1, 1, 0, 0})) << scale;
+  }
+}
+
 TEST(SelectionProperty, ATriangleIsLikeItself) {
   std::mt19937 random(9);
   std::normal_distribution<double> normal;

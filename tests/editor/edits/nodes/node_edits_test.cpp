@@ -279,6 +279,23 @@ TEST_F(NodeEdits, AlignsAndDistributesNodes) {
   expect_error(R"({"op": "align", "nodes": ["ball", "b"], "axis": "w"})", "must be x, y or z");
 }
 
+// Of the triangles, not of the boxes of rotated objects.
+TEST_F(NodeEdits, AlignedAndCentredAreTheTriangles) {
+  run(import + R"({"op": "duplicate", "node": "ball", "as": "b"}
+{"op": "transform", "node": "b", "rotate": {"axis": [0, 0, 1], "degrees": 40}, "translate": [5, 3, 0]}
+{"op": "align", "nodes": ["ball", "b"], "axis": "y", "to": "least"})");
+  const auto corners = [&](const char* name) {
+    Box box;
+    const PlacedNode placed = *find_placed(session.scene(), node(name)->id);
+    for (const Vec3& p : placed.node->object->sets[0].soup.positions()) box.extend(placed.to_world * p);
+    return box;
+  };
+  EXPECT_NEAR(corners("b").min().y(), corners("ball").min().y(), 1e-12);
+  const Vec3 middle = corners("b").center();
+  run(R"({"op": "transform", "node": "b", "scale": 3})");
+  EXPECT_LT((corners("b").center() - middle).norm(), 1e-12);
+}
+
 TEST_F(NodeEdits, RotatingTrianglesOfAScaledNodeRotatesViewDirections) {
   run(import + R"({"op": "transform", "node": "ball", "scale": [4, 1, 1]})");
   const Mat3 before = find_placed(session.scene(), node("ball")->id)->to_world.linear();

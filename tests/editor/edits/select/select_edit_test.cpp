@@ -198,6 +198,23 @@ TEST(SelectEdit, UnneededByTwoCriteriaIsTheUnionOfBoth) {
   for (std::size_t f = 0; f < behind.size(); ++f) EXPECT_GE(wider[f], behind[f]);
 }
 
+TEST(SelectEdit, VisibleTrianglesInAPictureDoNotDependOnTheScale) {
+  std::vector<std::size_t> counts;
+  for (const double scale : {1.0, 1e15, 1e17, 1e20}) {
+    Scene scene = scene_of(made_object({.holes = false}), "ball");
+    scene = with_changed(scene, scene.roots[0]->id,
+                         [&](Node& node) { node.to_parent = Affine(Eigen::UniformScaling<double>(scale)); });
+    const nlohmann::json line{{"op", "select_picture"},
+                              {"polygon", {{30, 0}, {64, 0}, {64, 34}, {30, 34}}},
+                              {"size", {64, 64}},
+                              {"camera", {{"eye", {0, 0, 5 * scale}}, {"target", {0, 0, 0}}, {"fov", 40}}}};
+    const auto selection = apply(scene, read_edit(line, scene)).scene.roots[0]->selection;
+    counts.push_back(selection ? count(*selection) : 0);
+  }
+  EXPECT_GT(counts[0], 10U);
+  for (const std::size_t one : counts) EXPECT_EQ(one, counts[0]);
+}
+
 TEST(SelectEdit, SpheresInTheBoundsOfAFlatObjectDoNotDependOnItsSize) {
   for (const double size : {0.1, 1.0, 100.0}) {
     auto object = std::make_shared<BakedObject>(*made_object());
@@ -207,7 +224,7 @@ TEST(SelectEdit, SpheresInTheBoundsOfAFlatObjectDoNotDependOnItsSize) {
     const Scene scene = scene_of(object, "floor");
     const nlohmann::json line{
         {"op", "select"}, {"frame", "bounds"}, {"sphere", {{"center", {0.5, 0.5, 0.5}}, {"radius", 0.3}}}};
-    const auto& selection = apply(scene, read_edit(line, scene)).scene.roots[0]->selection;
+    const auto selection = apply(scene, read_edit(line, scene)).scene.roots[0]->selection;
     ASSERT_NE(selection, nullptr) << size;
     EXPECT_EQ(count(*selection), 2U) << size;
   }

@@ -186,6 +186,21 @@ TEST_F(Meshes, GltfInAllContainers) {
   expect_quarters(read("square.glb"), "glb");
 }
 
+TEST_F(Meshes, GltfContentThatIsNotReadIsSaid) {
+  nlohmann::json root = square_gltf();
+  root["animations"] = {{{"channels", nlohmann::json::array()}, {"samplers", nlohmann::json::array()}}};
+  root["cameras"] = {{{"type", "perspective"}}};
+  root["extensions"]["KHR_lights_punctual"]["lights"] = nlohmann::json::array();
+  root["nodes"].push_back(root["nodes"][0]);
+  root["scenes"] = {{{"nodes", {0, 1}}}, {{"nodes", {0}}}};
+  write_text(path("square.gltf"), root.dump());
+  const Scene scene = read("square.gltf");
+  const std::string said = fmt::format("{}", fmt::join(scene.roots[0]->object->origin->assumptions, "\n"));
+  for (const char* what :
+       {"animations are skipped", "cameras are skipped", "lights are skipped", "main scene", "become one object"})
+    EXPECT_NE(said.find(what), std::string::npos) << what << "\n" << said;
+}
+
 TEST_F(Meshes, GltfTransformsAndFactors) {
   // A quarter turn about z, twice the size, moved by (10, 0, 0); the turn takes (x, y) to (−y, x).
   nlohmann::json root = square_gltf(
