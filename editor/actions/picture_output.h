@@ -29,8 +29,8 @@ struct PictureContent {
   }
 };
 
-/// Throws FileError if `file`, one of files_of(), would replace a link or another program's picture that the user has
-/// not named: a file of a pass.
+/// Throws FileError if `file`, one of files_of(), would replace something else than a picture that Rebake rendered, or,
+/// for a file of a pass, which the user has not named, a link.
 void refuse_replacing_unnamed(const std::filesystem::path& file, const std::filesystem::path& out);
 
 /// The files that are written for `out`: itself, or one for each pass.

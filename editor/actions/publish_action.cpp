@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
@@ -26,13 +28,14 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view page_mark = "<meta name=\"generator\" content=\"Rebake\">\n";
-constexpr std::string_view hash_mark = "<meta name=\"rebake-content\" content=\"";
+constexpr std::string_view hash_mark = "<meta name=\"rebake-files\" content=\"";
 
-using Files = std::map<std::string, std::string>;  // relative path → bytes
-
-std::string hash_line(const Files& files) {
+// Hash of a page's files by their relative paths, in order; `read` returns their bytes.
+template <class Read>
+std::string hash_line(const std::set<std::string>& names, const Read& read) {
   ContentHash hash;
-  for (const auto& [name, bytes] : files) {
+  for (const std::string& name : names) {
+    const std::string bytes = read(name);
     hash.add(fmt::format("{} {} ", name, bytes.size()));
     hash.add(bytes);
   }
@@ -40,8 +43,10 @@ std::string hash_line(const Files& files) {
 }
 
 // Adds the hash of all files to index.html, by which later publishing tells whether they were changed.
-void add_hash(Files& files) {
-  const std::string line = hash_line(files);
+void add_hash(std::map<std::string, std::string>& files) {
+  std::set<std::string> names;
+  for (const auto& [name, bytes] : files) names.insert(name);
+  const std::string line = hash_line(names, [&](const std::string& name) { return files.at(name); });
   std::string& index = files.at("index.html");
   index.insert(index.find(page_mark) + page_mark.size(), line);
 }
@@ -51,14 +56,17 @@ bool is_page(const fs::path& file) {
   return fs::is_regular_file(file, error) && read_file(file).find(page_mark) != std::string::npos;
 }
 
-// Throws FileError if someone has changed the files of a page. Pages of older versions have no hash.
-void refuse_changed(const fs::path& page, Files files) {
-  std::string& index = files.at("index.html");
-  const std::size_t at = index.find(hash_mark);
+// Throws FileError if someone has changed the files of a page since it was published. `index`: the page itself. Pages
+// of older versions have no hash.
+void refuse_changed(const fs::path& page, const fs::path& index, const std::set<std::string>& names) {
+  std::string text = read_file(index);
+  const std::size_t at = text.find(hash_mark);
   if (at == std::string::npos) return;
-  const std::string line = index.substr(at, index.find('\n', at) + 1 - at);
-  index.erase(at, line.size());
-  if (line != hash_line(files))
+  const std::string line = text.substr(at, text.find('\n', at) + 1 - at);
+  text.erase(at, line.size());
+  if (line != hash_line(names, [&](const std::string& name) {
+        return name == "index.html" ? text : read_file(index.parent_path() / name);
+      }))
     throw FileError(
         page, "was changed since it was published, so it is not replaced; choose another name, or move it elsewhere");
 }
@@ -81,7 +89,7 @@ void refuse_other_folder(const fs::path& folder) {
   if (fs::is_empty(folder)) return;
   if (!is_page(folder / "index.html"))
     throw FileError(folder, "exists and is not a published page; choose a new or empty folder");
-  Files files;
+  std::set<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const fs::path inside = entry.path().lexically_relative(folder);
     const bool is_own = entry.is_directory() ? inside == "data" || inside == "viewer" : is_of_page(folder, inside);
@@ -89,9 +97,9 @@ void refuse_other_folder(const fs::path& folder) {
       throw FileError(
           folder,
           fmt::format("contains \"{}\", which is not part of its page; choose a new or empty folder", inside.string()));
-    if (entry.is_regular_file()) files[inside.generic_string()] = read_file(entry.path());
+    if (entry.is_regular_file()) names.insert(inside.generic_string());
   }
-  refuse_changed(folder, std::move(files));
+  refuse_changed(folder, folder / "index.html", names);
 }
 
 void refuse_other_file(const fs::path& file) {
@@ -100,7 +108,7 @@ void refuse_other_file(const fs::path& file) {
   if (!fs::exists(file, error) || fs::file_size(file, error) == 0) return;
   if (!is_page(file))
     throw FileError(file, "exists and is not a published page, so it is not replaced; choose another name");
-  refuse_changed(file, {{"index.html", read_file(file)}});
+  refuse_changed(file, file, {"index.html"});
 }
 
 WebPageOptions options_of(const Scene& scene, const PublishAction& action) {

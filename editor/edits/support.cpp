@@ -176,13 +176,14 @@ Scene with_only(const Scene& scene, const std::vector<NodeRef>& nodes) {
 
 namespace {
 
-// A node and its children, the node itself visible, where they are in the world.
+// A node and its children, the node itself visible, where they are in the world; nothing if there is no such node.
 Scene subtree(const Scene& scene, NodeId id) {
   Scene part;
-  const PlacedNode placed = present(scene, id);
-  Node root = *placed.node;
+  const auto placed = find_placed(scene, id);
+  if (!placed) return part;
+  Node root = *placed->node;
   root.visible = true;
-  root.to_parent = placed.to_world;
+  root.to_parent = placed->to_world;
   part.roots.push_back(std::make_shared<const Node>(std::move(root)));
   return part;
 }

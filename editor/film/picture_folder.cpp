@@ -96,11 +96,11 @@ std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json
   return pictures;
 }
 
-// Before pictures are removed: someone may have put one of their own under such a name.
+// Someone may have put a picture of their own under such a name. A damaged one is rendered again.
 void refuse_foreign(const std::vector<fs::path>& pictures) {
   for (const fs::path& picture : pictures)
-    if (is_picture_file(picture) && !is_rendered_picture(picture))
-      throw FileError(picture, "was not rendered by Rebake, so it is not removed; move it elsewhere");
+    if (std::error_code error; fs::file_size(picture, error) > 0 && !is_rendered_picture(picture))
+      throw FileError(picture, "was not rendered by Rebake, so it is no picture of this film; move it elsewhere");
 }
 
 }  // namespace
@@ -150,6 +150,7 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
     lock();
     const nlohmann::json before = record_in(folder_);
     const std::vector<fs::path> pictures = film_pictures(folder_, before);
+    refuse_foreign(pictures);
     const bool of_video = before.is_object() && before.value("video", false);
     if (before.is_object() && before.value("content", "") == content) {
       if (replaces && !of_video)
@@ -164,7 +165,6 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
       throw FileError(folder_,
                       "holds pictures of another film: the scene, the way or the options differ; choose another "
                       "folder, or remove this one first");
-    refuse_foreign(pictures);
     for (const fs::path& picture : pictures) {
       sources.check_file(picture);
       remove_file(picture);

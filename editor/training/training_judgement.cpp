@@ -5,9 +5,10 @@
 #include <limits>
 
 #include "editor/actions/views.h"
-#include "mesh_ops/features/distill/fuse_errors.h"
 
 namespace rebake {
+
+double decibels_of(double mean_squared_error) { return std::min(-10 * std::log10(mean_squared_error), 100.0); }
 
 namespace {
 
@@ -59,11 +60,11 @@ TrainingBaselines baselines(const std::vector<FitPhotograph>& training, const st
   const double share = 1.0 / static_cast<double>(held_out.size());
   for (const Photograph& photograph : held_out) {
     result.mean_color_db +=
-        share * psnr_of(squared_error(photograph, [&](int, int, std::size_t c) { return sums[c] / count; }));
-    result.white_db += share * psnr_of(squared_error(photograph, [&](int, int, std::size_t) { return 255.0; }));
+        share * decibels_of(squared_error(photograph, [&](int, int, std::size_t c) { return sums[c] / count; }));
+    result.white_db += share * decibels_of(squared_error(photograph, [&](int, int, std::size_t) { return 255.0; }));
     const FitPhotograph& nearest = nearest_to(photograph.camera, training);
     result.nearest_photograph_db +=
-        share * psnr_of(squared_error(photograph, [&](int x, int y, std::size_t c) {
+        share * decibels_of(squared_error(photograph, [&](int x, int y, std::size_t c) {
           const int column = x * nearest.width / photograph.image.width,
                     row = y * nearest.height / photograph.image.height;
           return static_cast<double>(nearest.rgb[3 * static_cast<std::size_t>(row * nearest.width + column) + c]);
@@ -85,8 +86,8 @@ double held_out_psnr(const Reconstruction& training, const Capture& capture, con
   for (std::size_t k = 0; k < capture.held_out.size(); ++k) {
     progress.at("comparing held-out photographs",
                 static_cast<double>(k) / static_cast<double>(capture.held_out.size()));
-    sum +=
-        psnr_of(training.error_of(views, k, nullptr, every, progress)) / static_cast<double>(capture.held_out.size());
+    sum += decibels_of(training.error_of(views, k, nullptr, every, progress)) /
+           static_cast<double>(capture.held_out.size());
   }
   return sum;
 }

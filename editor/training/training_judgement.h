@@ -7,6 +7,9 @@
 
 namespace rebake {
 
+/// PSNR in dB, at most 100, of a mean squared error of colours in [0, 1]; not a number for one that is none.
+double decibels_of(double mean_squared_error);
+
 /// Mean errors over held-out photographs.
 struct MeanErrors {
   double psnr_db = 0, ssim = 0, flip = 0;

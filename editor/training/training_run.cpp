@@ -184,7 +184,7 @@ bool TrainingRun::write_state() {
 
 // A row of the table, and a picture of the scene beside a photograph.
 void TrainingRun::show_progress(double mean_error, const Progress& progress) {
-  rows_.push_back({static_cast<double>(reconstruction_->steps_done()), seconds(), psnr_of(mean_error)});
+  rows_.push_back({static_cast<double>(reconstruction_->steps_done()), seconds(), decibels_of(mean_error)});
   std::string table = table_header;
   for (const auto& [steps, seconds, psnr] : rows_) table += fmt::format("{:.0f},{:.1f},{:.3f}\n", steps, seconds, psnr);
   const FitPhotograph photograph = reduced(reconstruction_->views().photographs().front(), preview_side);
@@ -233,7 +233,7 @@ void TrainingRun::advance(Loop& loop, const Progress& progress) {
   if (ends_stage || now - loop.shown > watch_seconds || (loop.shown == 0 && now > until_first_preview)) {
     loop.shown = now;
     const double error = loop.error / static_cast<double>(loop.errors);
-    loop.psnr = psnr_of(error);
+    loop.psnr = decibels_of(error);
     // Keeps the text of the progress.
     show_progress(error, Progress([&](std::string_view, double) { progress.at(loop.text, loop.share); }));
     loop.error = 0;

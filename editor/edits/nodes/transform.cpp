@@ -20,17 +20,14 @@ Mat3 scaling(const Transform& edit) {
 
 Scene apply(const Scene& scene, const Transform& edit) {
   const PlacedNode placed = editable_with_children(scene, edit.node.id);
-  Box box;
-  if (!edit.selection) {
-    box = triangle_bounds(scene, edit.node.id);
-  } else {
-    box = selection_bounds(object_with_selection(scene, edit.node));
-  }
-  const Vec3 pivot = edit.pivot      ? *edit.pivot
-                     : box.isEmpty() ? Vec3(placed.to_world.translation())
-                                     : Vec3(box.center());
+  if (edit.selection) object_with_selection(scene, edit.node);
   Affine motion = Affine::Identity();
   const Mat3 linear = edit.rotate.matrix() * scaling(edit);
+  Vec3 pivot = edit.pivot.value_or(placed.to_world.translation());
+  if (!edit.pivot && !linear.isIdentity(0)) {
+    const Box box = edit.selection ? selection_bounds(placed) : triangle_bounds(scene, edit.node.id);
+    if (!box.isEmpty()) pivot = box.center();
+  }
   motion.linear() = linear;
   // A pure translation is exact, without rounding errors from the pivot.
   motion.translation() = linear.isIdentity(0) ? edit.translate : Vec3(pivot + edit.translate - linear * pivot);

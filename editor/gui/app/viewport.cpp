@@ -413,7 +413,8 @@ void Viewport::move_camera(EditorContext& editor, const Pointer& pointer) {
 void Viewport::use_tool(EditorContext& editor, const ViewportProjection& lens, const Pointer& pointer) {
   try {
     // Nodes of another document have the same numbers.
-    if (std::exchange(tool_document_, editor.now->document) != editor.now->document) tool(editor).cancel(editor);
+    if (std::exchange(tool_document_, editor.now->document).value_or(editor.now->document) != editor.now->document)
+      tool(editor).leave(editor);
     const bool rests = editor.at_rest() && !editor.jobs.worker.busy();
     if (rests || !tool(editor).needs_current_scene() || tool(editor).busy())
       tool(editor).pointer(editor, lens, pointer);

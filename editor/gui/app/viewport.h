@@ -101,8 +101,8 @@ class Viewport {
       compiled_for_;                     ///< picture for whose scene compile_next_program() has compiled all programs
   unsigned before_texture_ = 0;          ///< OpenGL texture of the imported scene's picture
   ToolKind last_tool_ = ToolKind::pick;  ///< tool of the previous frame
-  std::uint64_t tool_document_ = 0;      ///< document that tools work on
-  unsigned texture_ = 0;                 ///< OpenGL texture of the picture; 0: it could not be drawn
+  std::optional<std::uint64_t> tool_document_;  ///< document that tools work on
+  unsigned texture_ = 0;                        ///< OpenGL texture of the picture; 0: it could not be drawn
   SceneThumbnails scene_thumbnails_;
   bool each_pass_ = false;
   bool drew_ = false;  ///< a new picture was drawn in this frame

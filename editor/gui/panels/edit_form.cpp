@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/edits/nodes/import.h"
+#include "editor/edits/nodes/unlock.h"
 #include "editor/edits/scene_change.h"
 #include "editor/edits/select/select.h"
 #include "editor/edits/select/select_like.h"
@@ -114,7 +115,8 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
     // Nothing is picked, but the edit needs a node: the only visible object.
     std::vector<json> visible;
     for (const PlacedNode& placed : placed_nodes(editor.scene()))
-      if (placed.visible && placed.node->object) visible.push_back(with_node(placed.node->id));
+      if (placed.visible && placed.node->object && (!placed.locked || op_ == Unlock::op))
+        visible.push_back(with_node(placed.node->id));
     if (visible.empty()) throw EditError("the scene has no visible object");
     if (visible.size() > 1) throw EditError("nothing is picked: pick a node");
     return visible;

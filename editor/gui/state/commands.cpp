@@ -238,9 +238,8 @@ void store_view(ToolContext& editor, const std::string& name) {
 
 void run_command(EditorContext& editor, const Command& command) {
   const std::string title = command.title;
-  if (command.needs_rest && !editor.unchanging())
-    editor.messages.say(title +
-                        ": another step is still running. Try again when it has finished, or press Esc to cancel it.");
+  if (command.needs_rest && editor.jobs.worker.changes())
+    editor.messages.say(title + ": another step is still running or waiting. Try again when it has finished.");
   else if (!command.enabled(editor))
     editor.messages.say(title + ": not available now. Open a scene, pick nodes or select triangles first.");
   else

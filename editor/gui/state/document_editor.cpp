@@ -46,7 +46,6 @@ Scene DocumentEditor::shown() const {
 
 bool DocumentEditor::take_news() {
   at_rest_ = !jobs.worker.busy();
-  unchanging_ = !jobs.worker.changes();
   std::vector<Worker::Message> news = jobs.worker.take_messages();
   for (Worker::Message& message : news) {
     switch (message.kind) {
@@ -150,7 +149,7 @@ void DocumentEditor::edit(const Edit& one) { edits({one}); }
 
 void DocumentEditor::change(std::string title, Worker::Job job, std::function<void()> then,
                             std::function<void()> otherwise) {
-  at_rest_ = unchanging_ = false;
+  at_rest_ = false;
   const auto ending = [this, shown = previews.requests()](std::function<void()> after) {
     return [this, shown, after = std::move(after)] {
       end_preview(shown);  // also after a failure
@@ -261,7 +260,7 @@ void DocumentEditor::undo(int steps) { move_in_history(steps, undo_step_in, "Und
 void DocumentEditor::redo(int steps) { move_in_history(steps, redo_step_in, "Redid: "); }
 
 void DocumentEditor::move_in_history(int steps, void (*step)(Session&, StepsMade&), const char* did) {
-  at_rest_ = unchanging_ = false;
+  at_rest_ = false;
   const auto made = std::make_shared<StepsMade>();
   jobs.worker.start_change(
       step == undo_step_in ? "undo" : "redo",
@@ -283,7 +282,7 @@ void DocumentEditor::go_to(std::size_t steps) {
     last.push_back(now->steps[k].last);
     edits.push_back(edits.back() + now->steps[k].edits);
   }
-  at_rest_ = unchanging_ = false;
+  at_rest_ = false;
   const bool undoes = steps < now->steps_done;
   const auto made = std::make_shared<StepsMade>();
   jobs.worker.start_change(

@@ -51,8 +51,6 @@ struct DocumentEditor {
 
   /// Whether no job was running or waiting when `now` was fetched, so that it equals the document.
   bool at_rest() const { return at_rest_; }
-  /// Whether no job was running or waiting when `now` was fetched, or is now, that changes the document or the picks.
-  bool unchanging() const { return unchanging_ && !jobs.worker.changes(); }
 
   /// Applies an edit of triangles to each node of scope(), as one step. T has a field `node`.
   template <class T>
@@ -181,7 +179,7 @@ struct DocumentEditor {
   /// Whether it is in a picked node, or nothing is picked.
   static bool is_picked(const std::set<NodeId>& picks, const Scene& in, NodeId node);
   std::map<NodeId, std::size_t> selected_;  ///< number of selected triangles per node, without zeros
-  bool at_rest_ = false, unchanging_ = false;
+  bool at_rest_ = false;
   std::vector<std::function<void()>> finished_;  ///< callbacks of ended jobs
 };
 

@@ -71,6 +71,7 @@ void Worker::add(Waiting job) {
   {
     const std::lock_guard lock(mutex_);
     if (job.document) job.document = seen_document_;
+    unseen_changes_ = unseen_changes_ || job.changes;
     waiting_.push_back(std::move(job));
   }
   changed_.notify_all();
@@ -88,8 +89,7 @@ bool Worker::busy() const {
 
 bool Worker::changes() const {
   const std::lock_guard lock(mutex_);
-  return (running_ && running_changes_) ||
-         std::any_of(waiting_.begin(), waiting_.end(), [](const Waiting& job) { return job.changes; });
+  return unseen_changes_;
 }
 
 void Worker::cancel() {
@@ -129,6 +129,8 @@ std::vector<Worker::Message> Worker::take_messages() {
 
 std::vector<std::function<void()>> Worker::take_finished() {
   const std::lock_guard lock(mutex_);
+  unseen_changes_ = (running_ && running_changes_) ||
+                    std::any_of(waiting_.begin(), waiting_.end(), [](const Waiting& job) { return job.changes; });
   return std::exchange(finished_, {});
 }
 

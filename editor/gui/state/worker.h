@@ -61,7 +61,7 @@ class Worker {
   void saw(const Snapshot& snapshot);
   /// Whether a job is running or waiting.
   bool busy() const;
-  /// Whether a job of start_change() is running or waiting.
+  /// Whether a job of start_change() was running or waiting at the last take_finished(), or has begun since.
   bool changes() const;
   /// Cancels the running job and removes the waiting ones.
   void cancel();
@@ -111,7 +111,7 @@ class Worker {
   void add(Waiting job);
   std::uint64_t seen_document_ = 0;
   std::deque<Waiting> waiting_;
-  bool running_ = false, running_changes_ = false, ending_ = false;
+  bool running_ = false, running_changes_ = false, unseen_changes_ = false, ending_ = false;
   std::atomic<bool> cancel_ = false, drops_renderer_ = false;
   Status status_;
   std::shared_ptr<const Snapshot> snapshot_ = std::make_shared<const Snapshot>();

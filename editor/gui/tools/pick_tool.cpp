@@ -50,7 +50,7 @@ void take(ToolContext& editor, const std::optional<PickHit>& picked, const Point
     return;
   }
   if (!pointer.shift && !pointer.control) editor.active.clear();
-  if (!picked) return;
+  if (!picked || !find(editor.scene(), picked->node)) return;  // it may be gone by now
   if (pointer.control)
     editor.active.erase(picked->node);
   else
