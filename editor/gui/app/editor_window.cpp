@@ -223,18 +223,24 @@ class EditorWindow {
     }
     if (editor_.dialogs.palette || editor_.dialogs.keys) {
       editor_.dialogs.palette = editor_.dialogs.keys = false;
-    } else if (editor_.jobs.film) {
+      return;
+    }
+    if (editor_.jobs.film) {
       editor_.messages.say(editor_.jobs.film->stopped());
       editor_.jobs.end_film();
-    } else if (viewport().tool(editor_).busy() && viewport().cancel(editor_)) {
       return;
-    } else if (!editor_.dialogs.form.empty()) {
+    }
+    if (viewport().tool(editor_).busy() && viewport().cancel(editor_)) return;
+    if (!editor_.dialogs.form.empty()) {
       editor_.dialogs.form.clear();
-    } else if (editor_.dialogs.training) {
-      editor_.dialogs.training = false;
-    } else if (viewport().cancel(editor_) || editor_.messages.close_failures()) {
       return;
-    } else if (editor_.jobs.worker.busy()) {
+    }
+    if (editor_.dialogs.training) {
+      editor_.dialogs.training = false;
+      return;
+    }
+    if (viewport().cancel(editor_) || editor_.messages.close_failures()) return;
+    if (editor_.jobs.worker.busy()) {
       editor_.jobs.worker.cancel();
     } else if (editor_.tools.kind != ToolKind::pick) {
       editor_.tools.kind = ToolKind::pick;
