@@ -126,7 +126,7 @@ std::vector<json> EditForm::lines(const DocumentEditor& editor) const {
     for (const NodeId id : editor.active_tops()) result.push_back(with_node(id));
   else
     for (const std::optional<NodeRef>& one : editor.scope(selection)) result.push_back(with_node(one->id));
-  // One edit, which does not erase in one node what it uncovers in another.
+  // One edit for all nodes, so that texels which it uncovers stay.
   if (op_ == Erase::op && result.size() > 1) {
     for (const json& one : result) line["nodes"].push_back(one.at("node"));
     return {line};

@@ -65,7 +65,7 @@ void RegionTool::finish(ToolContext& editor) {
     Erase erase;
     erase.picture = picture;
     erase.through = !editor.tools.visible_only();
-    // One edit for all nodes, which does not erase texels that it uncovers.
+    // One edit for all nodes, so that texels which it uncovers stay.
     for (const std::optional<NodeRef>& node : editor.scope())
       if (node) erase.nodes.push_back(*node);
     if (!editor.active.empty() && erase.nodes.empty())
