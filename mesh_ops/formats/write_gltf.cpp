@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -11,10 +10,10 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/features/atlas/atlas.h"
 #include "mesh_ops/features/distill/mean_colors.h"
+#include "mesh_ops/formats/glb_file.h"
 #include "mesh_ops/formats/gltf_features.h"
 #include "mesh_ops/formats/images/picture_codecs.h"
 #include "mesh_ops/formats/images/png_writer.h"
-#include "mesh_ops/formats/meshes/meshopt_codec.h"
 #include "mesh_ops/formats/mobilenerf/feature_png.h"
 #include "mesh_ops/formats/mobilenerf/rotations_file.h"
 #include "mesh_ops/formats/motion_samples.h"
@@ -29,14 +28,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* generator = "Rebake";
 constexpr std::size_t directions = 128;  // over which colours are averaged
 constexpr int largest_texture = 8192;    // side that current devices support
 constexpr int png_level = 6;
-
-// Constants of the format.
-constexpr int float_type = 5126, unsigned_int_type = 5125, short_type = 5122, unsigned_short_type = 5123,
-              vertex_target = 34962, index_target = 34963, nearest = 9728, clamp_to_edge = 33071;
 
 template <class Matrix>
 json column_major(const Matrix& m) {
@@ -46,12 +40,12 @@ json column_major(const Matrix& m) {
   return values;
 }
 
-// The document while it is made.
+// Puts a scene into a document.
 class GltfWriter {
  public:
   // `features`: also carries everything in an extension (gltf_features.h).
   GltfWriter(const Scene& scene, bool features, const ExportOptions& options, const Progress& progress)
-      : progress_(progress), features_(features), eye_(options.colors_from), compression_(options.compression) {
+      : progress_(progress), features_(features), eye_(options.colors_from), gltf_(options.compression) {
     for (const PlacedNode& placed : placed_nodes(scene))
       if (placed.visible && placed.node->object) visible_.push_back(placed);
     if (visible_.empty()) throw EditError("there is nothing to export: no visible node has triangles");
@@ -59,8 +53,6 @@ class GltfWriter {
     size_ = box.isEmpty() ? 0 : box.diagonal().norm();
     bounds_ = box;
     rays_.emplace(rays_through(visible_));
-    for (const char* list : {"nodes", "meshes", "materials", "textures", "images", "accessors", "bufferViews"})
-      root_[list] = json::array();
     json roots = json::array();
     for (const NodePtr& node : scene.roots)
       if (node->visible) roots.push_back(add_node(*node));
@@ -74,92 +66,14 @@ class GltfWriter {
           }))
         notes_.emplace_back("the film camera keeps the field of view of its first keyframe: glTF cannot animate it");
     }
-    root_["scenes"] = {{{"nodes", roots}}};
-    root_["scene"] = 0;
-    root_["asset"] = {{"version", "2.0"}, {"generator", generator}};
-    root_["extensionsUsed"] = {"KHR_materials_unlit"};
-    for (const auto& [used, name] : {std::pair(compression_.quantized, "KHR_mesh_quantization"),
-                                     {compression_.meshopt, meshopt_extension},
-                                     {compression_.webp, "EXT_texture_webp"}})
-      if (used) {
-        root_["extensionsUsed"].push_back(name);
-        root_["extensionsRequired"].push_back(name);
-      }
     if (features_) add_features(scene);
-    root_["samplers"] = json::array(
-        {{{"magFilter", nearest}, {"minFilter", nearest}, {"wrapS", clamp_to_edge}, {"wrapT", clamp_to_edge}}});
-    if (!channels_.empty())
-      root_["animations"] = json::array({{{"name", "keyframes"}, {"channels", channels_}, {"samplers", samplers_}}});
-    root_["buffers"] = json::array({{{"byteLength", bytes_.size()}}});
-    // Stands for the decompressed bytes.
-    if (compression_.meshopt)
-      root_["buffers"].push_back(
-          {{"byteLength", decompressed_}, {"extensions", {{meshopt_extension, {{"fallback", true}}}}}});
+    gltf_.finish(std::move(roots));
   }
 
-  // The bytes of a .glb file.
-  std::string glb() const {
-    std::string text = root_.dump(-1, ' ', false, json::error_handler_t::replace), bytes = bytes_;
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    bytes.resize((bytes.size() + 3) / 4 * 4, '\0');
-    std::string file = "glTF";
-    const auto add = [&](std::size_t value) {
-      for (int shift = 0; shift < 32; shift += 8) file += static_cast<char>(value >> shift & 255U);
-    };
-    add(2);
-    add(12 + 8 + text.size() + 8 + bytes.size());
-    add(text.size());
-    file += "JSON" + text;
-    add(bytes.size());
-    file += std::string("BIN\0", 4) + bytes;
-    return file;
-  }
+  std::string bytes() const { return gltf_.bytes(); }
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  std::size_t add_to(const char* list, json value) {
-    root_[list].push_back(std::move(value));
-    return root_[list].size() - 1;
-  }
-
-  std::size_t add_view(const void* data, std::size_t size, int target) {
-    bytes_.resize((bytes_.size() + 3) / 4 * 4, '\0');
-    json view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}};
-    if (target != 0) view["target"] = target;
-    bytes_.append(static_cast<const char*>(data), size);
-    return add_to("bufferViews", view);
-  }
-
-  // Vertex data of `stride` bytes per vertex, or indices of triangles (stride 0), compressed if asked for.
-  std::size_t add_geometry(const void* data, std::size_t count, std::size_t stride) {
-    const std::size_t element = stride > 0 ? stride : sizeof(std::uint32_t);
-    const std::string_view bytes(static_cast<const char*>(data), count * element);
-    const int target = stride > 0 ? vertex_target : index_target;
-    std::size_t view = 0;
-    if (!compression_.meshopt) {
-      view = add_view(data, bytes.size(), target);
-    } else {
-      const std::string packed = stride > 0 ? meshopt_attributes(bytes, count, stride) : meshopt_triangles(bytes);
-      view = add_view(packed.data(), packed.size(), target);
-      json& made = root_["bufferViews"][view];
-      const json compressed = {{"buffer", 0},
-                               {"byteOffset", made.at("byteOffset")},
-                               {"byteLength", packed.size()},
-                               {"byteStride", element},
-                               {"count", count},
-                               {"mode", stride > 0 ? "ATTRIBUTES" : "TRIANGLES"}};
-      decompressed_ = (decompressed_ + 3) / 4 * 4;
-      made = {{"buffer", 1},
-              {"byteOffset", decompressed_},
-              {"byteLength", bytes.size()},
-              {"target", target},
-              {"extensions", {{meshopt_extension, compressed}}}};
-      decompressed_ += bytes.size();
-    }
-    if (stride > 0) root_["bufferViews"][view]["byteStride"] = stride;
-    return view;
-  }
-
   std::size_t add_node(const Node& node) {
     json made = {{"name", node.name}};
     const bool moves = node.motion && !node.motion->place.empty();
@@ -170,7 +84,7 @@ class GltfWriter {
     for (const NodePtr& child : node.children)
       if (child->visible) children.push_back(add_node(*child));
     if (!children.empty()) made["children"] = children;
-    const std::size_t number = add_to("nodes", made);
+    const std::size_t number = gltf_.add("nodes", made);
     if (moves) {
       const PlaceSamples samples = place_samples(node.motion->place);
       animate(number, samples, true);
@@ -180,32 +94,9 @@ class GltfWriter {
     return number;
   }
 
-  std::size_t add_floats(const std::vector<float>& values, std::size_t count, const char* shape) {
-    const std::size_t view = add_view(values.data(), values.size() * sizeof(float), 0);
-    return add_to("accessors",
-                  {{"bufferView", view}, {"componentType", float_type}, {"count", count}, {"type", shape}});
-  }
-  // An accessor of increasing times, with their range.
-  std::size_t add_times(const std::vector<double>& seconds) {
-    // Times of jumps are so close that they may be the same float.
-    std::vector<float> times;
-    for (const double time : seconds)
-      times.push_back(times.empty() ? static_cast<float>(time)
-                                    : std::max(static_cast<float>(time),
-                                               std::nextafter(times.back(), std::numeric_limits<float>::infinity())));
-    const std::size_t accessor = add_floats(times, times.size(), "SCALAR");
-    root_["accessors"][accessor]["min"] = {times.front()};
-    root_["accessors"][accessor]["max"] = {times.back()};
-    return accessor;
-  }
-  void add_channel(std::size_t node, const char* path, std::size_t times, std::size_t values, bool step) {
-    channels_.push_back({{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", path}}}});
-    samplers_.push_back({{"input", times}, {"output", values}, {"interpolation", step ? "STEP" : "LINEAR"}});
-  }
-
   // Animated nodes have a translation, rotation and scale in place of a matrix.
   void animate(std::size_t node, const PlaceSamples& samples, bool scales) {
-    const std::size_t count = samples.seconds.size(), times = add_times(samples.seconds);
+    const std::size_t count = samples.seconds.size(), times = gltf_.add_times(samples.seconds);
     std::vector<float> translations, rotations, factors;
     for (std::size_t k = 0; k < count; ++k) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -214,15 +105,15 @@ class GltfWriter {
       }
       for (int part = 0; part < 4; ++part) rotations.push_back(static_cast<float>(samples.rotations[k].coeffs()[part]));
     }
-    json& made = root_["nodes"][node];
+    json& made = gltf_.at("nodes", node);
     made.erase("matrix");
     made["translation"] = {translations[0], translations[1], translations[2]};
     made["rotation"] = {rotations[0], rotations[1], rotations[2], rotations[3]};
-    add_channel(node, "translation", times, add_floats(translations, count, "VEC3"), samples.step);
-    add_channel(node, "rotation", times, add_floats(rotations, count, "VEC4"), samples.step);
+    gltf_.add_channel(node, "translation", times, gltf_.add_floats(translations, count, "VEC3"), samples.step);
+    gltf_.add_channel(node, "rotation", times, gltf_.add_floats(rotations, count, "VEC4"), samples.step);
     if (!scales) return;
     made["scale"] = {factors[0], factors[1], factors[2]};
-    add_channel(node, "scale", times, add_floats(factors, count, "VEC3"), samples.step);
+    gltf_.add_channel(node, "scale", times, gltf_.add_floats(factors, count, "VEC3"), samples.step);
   }
 
   // A node per texture set, whose positions are relative to its centre, so that they fit into floats.
@@ -248,13 +139,13 @@ class GltfWriter {
       const Vec3 centre = set.soup.bounds().center();
       const std::size_t material = add_material(node.name, colors);
       double scale = 1;
-      const std::size_t mesh = add_to(
+      const std::size_t mesh = gltf_.add(
           "meshes", {{"name", node.name}, {"primitives", json::array({primitive(set, centre, material, scale)})}});
       if (features_) add_set(*node.object, s, mesh);
       json part = {{"name", node.name + " triangles"}, {"mesh", mesh}};
       if (!centre.isZero(0)) part["translation"] = {centre.x(), centre.y(), centre.z()};
       if (scale != 1) part["scale"] = {scale, scale, scale};
-      nodes.push_back(add_to("nodes", part));
+      nodes.push_back(gltf_.add("nodes", part));
       if (bends) add_poses(nodes.back(), mesh, set, s, scale, poses, bends->seconds);
     }
     if (bends)
@@ -276,9 +167,9 @@ class GltfWriter {
   // A feature image as a texture, with its bytes as in the format's own files.
   std::size_t add_feature_texture(const FeatureTexture& texels, int image) {
     const std::string png = write_feature_png(texels, image);
-    const std::size_t view = add_view(png.data(), png.size(), 0);
-    return add_to("textures",
-                  {{"sampler", 0}, {"source", add_to("images", {{"bufferView", view}, {"mimeType", "image/png"}})}});
+    const std::size_t view = gltf_.add_view(png.data(), png.size());
+    return gltf_.add("textures", {{"sampler", 0},
+                                  {"source", gltf_.add("images", {{"bufferView", view}, {"mimeType", "image/png"}})}});
   }
 
   // The features of an object's texture set, on its mesh: on materials they would stand beside KHR_materials_unlit,
@@ -288,7 +179,7 @@ class GltfWriter {
     auto& textures = feature_textures_[set.texels.get()];
     if (textures.empty())
       for (const int image : {0, 1}) textures.push_back(add_feature_texture(*set.texels, image));
-    root_["meshes"][mesh]["extensions"][gltf_features_extension] = {
+    gltf_.at("meshes", mesh)["extensions"][gltf_features_extension] = {
         {"features", {{{"index", textures[0]}}, {{"index", textures[1]}}}},
         {"alphaCode", set.texels->alpha_code() == AlphaCode::halved ? "halved" : "plain"}};
     if (!object_sets_.contains(&object)) object_order_.push_back(&object);
@@ -297,7 +188,9 @@ class GltfWriter {
       while (sets.size() <= number) sets.push_back(nullptr);
     if (!sets[number].is_null()) return;
     const Soup& soup = set.soup;
-    const auto view = [&](const auto& values) { return add_view(values.data(), values.size() * sizeof(values[0]), 0); };
+    const auto view = [&](const auto& values) {
+      return gltf_.add_view(values.data(), values.size() * sizeof(values[0]));
+    };
     sets[number] = {{"mesh", mesh},
                     {"positions", view(soup.positions())},
                     {"uvs", view(soup.uvs())},
@@ -317,14 +210,14 @@ class GltfWriter {
       json made = object_json(*object, stored);
       if (object->any_rotations()) {
         const std::string rotations = write_rotations(object->sets);
-        made["rotations"] = add_view(rotations.data(), rotations.size(), 0);
+        made["rotations"] = gltf_.add_view(rotations.data(), rotations.size());
       }
       objects.push_back(made);
     }
-    root_["extensionsUsed"].push_back(gltf_features_extension);
-    root_["extensions"][gltf_features_extension] = {{"version", gltf_features_version},
-                                                    {"objects", objects},
-                                                    {"scene", json::parse(write_scene_json(scene, names))}};
+    gltf_.root()["extensionsUsed"].push_back(gltf_features_extension);
+    gltf_.root()["extensions"][gltf_features_extension] = {{"version", gltf_features_version},
+                                                           {"objects", objects},
+                                                           {"scene", json::parse(write_scene_json(scene, names))}};
   }
 
   // Morph targets of a mesh, of which one after the other gets the weight 1.
@@ -344,15 +237,16 @@ class GltfWriter {
         box.extend(move);
         moves.insert(moves.end(), {move.x(), move.y(), move.z()});
       }
-      const std::size_t accessor = add_floats(moves, soup.positions().size(), "VEC3");
-      root_["accessors"][accessor]["min"] = {box.min().x(), box.min().y(), box.min().z()};
-      root_["accessors"][accessor]["max"] = {box.max().x(), box.max().y(), box.max().z()};
+      const std::size_t accessor = gltf_.add_floats(moves, soup.positions().size(), "VEC3");
+      gltf_.at("accessors", accessor)["min"] = {box.min().x(), box.min().y(), box.min().z()};
+      gltf_.at("accessors", accessor)["max"] = {box.max().x(), box.max().y(), box.max().z()};
       targets.push_back({{"POSITION", accessor}});
       for (std::size_t other = 0; other < poses.size(); ++other) weights.push_back(other == k ? 1.0F : 0.0F);
     }
-    root_["meshes"][mesh]["primitives"][0]["targets"] = targets;
-    root_["meshes"][mesh]["weights"] = std::vector<int>(poses.size(), 0);
-    add_channel(node, "weights", add_times(seconds), add_floats(weights, weights.size(), "SCALAR"), false);
+    gltf_.at("meshes", mesh)["primitives"][0]["targets"] = targets;
+    gltf_.at("meshes", mesh)["weights"] = std::vector<int>(poses.size(), 0);
+    gltf_.add_channel(node, "weights", gltf_.add_times(seconds), gltf_.add_floats(weights, weights.size(), "SCALAR"),
+                      false);
   }
 
   // The object's sets without the triangles and texels that nothing shows.
@@ -373,7 +267,7 @@ class GltfWriter {
 
   std::size_t add_color_texture(const std::string& name, const MeanColors& colors) {
     std::string bytes;
-    if (compression_.webp) {
+    if (gltf_.compression().webp) {
       std::string error;
       if (!picture_codecs("colours.webp")
                .encode("webp", colors.width, colors.height, 4, colors.rgba.data(), bytes, error))
@@ -381,77 +275,75 @@ class GltfWriter {
     } else {
       bytes = encode_png(colors.width, colors.height, 4, colors.rgba, png_level);
     }
-    const std::size_t view = add_view(bytes.data(), bytes.size(), 0);
-    const std::size_t image = add_to(
-        "images", {{"bufferView", view}, {"mimeType", compression_.webp ? "image/webp" : "image/png"}, {"name", name}});
+    const std::size_t view = gltf_.add_view(bytes.data(), bytes.size());
+    const std::size_t image = gltf_.add(
+        "images",
+        {{"bufferView", view}, {"mimeType", gltf_.compression().webp ? "image/webp" : "image/png"}, {"name", name}});
     json texture = {{"sampler", 0}};
-    if (compression_.webp)
+    if (gltf_.compression().webp)
       texture["extensions"]["EXT_texture_webp"]["source"] = image;
     else
       texture["source"] = image;
-    return add_to("textures", texture);
+    return gltf_.add("textures", texture);
   }
 
   std::size_t add_material(const std::string& name, const MeanColors& colors) {
-    return add_to("materials", {{"name", name},
-                                {"pbrMetallicRoughness",
-                                 {{"baseColorTexture", {{"index", add_color_texture(name, colors)}}},
-                                  {"metallicFactor", 0},
-                                  {"roughnessFactor", 1}}},
-                                {"alphaMode", "MASK"},
-                                {"alphaCutoff", 0.5},
-                                {"doubleSided", true},
-                                {"extensions", {{"KHR_materials_unlit", json::object()}}}});
-  }
-
-  std::size_t add_accessor(std::size_t view, int type, std::size_t count, const char* shape) {
-    return add_to("accessors", {{"bufferView", view}, {"componentType", type}, {"count", count}, {"type", shape}});
+    return gltf_.add("materials", {{"name", name},
+                                   {"pbrMetallicRoughness",
+                                    {{"baseColorTexture", {{"index", add_color_texture(name, colors)}}},
+                                     {"metallicFactor", 0},
+                                     {"roughnessFactor", 1}}},
+                                   {"alphaMode", "MASK"},
+                                   {"alphaCutoff", 0.5},
+                                   {"doubleSided", true},
+                                   {"extensions", {{"KHR_materials_unlit", json::object()}}}});
   }
 
   // Positions relative to a centre. `scale`: of the node, by which quantised positions are multiplied.
   std::size_t add_positions(const Soup& soup, const Vec3& centre, double& scale) {
     std::vector<Vec3> places;
     for (const Vec3& p : soup.positions()) places.push_back(p - centre);
-    if (compression_.quantized) {
+    if (gltf_.compression().quantized) {
       const QuantizedPositions quantized = quantized_positions(places);
       scale = quantized.scale;
       const std::size_t made =
-          add_accessor(add_geometry(quantized.values.data(), places.size(), sizeof(quantized.values[0])), short_type,
-                       places.size(), "VEC3");
-      root_["accessors"][made]["normalized"] = true;
-      root_["accessors"][made]["min"] = quantized.least;
-      root_["accessors"][made]["max"] = quantized.most;
+          gltf_.add_accessor(gltf_.add_geometry(quantized.values.data(), places.size(), sizeof(quantized.values[0])),
+                             GlbFile::short_type, places.size(), "VEC3");
+      gltf_.at("accessors", made)["normalized"] = true;
+      gltf_.at("accessors", made)["min"] = quantized.least;
+      gltf_.at("accessors", made)["max"] = quantized.most;
       return made;
     }
     std::vector<Eigen::Vector3f> floats;
     Eigen::AlignedBox3f box;
     for (const Vec3& p : places) box.extend(floats.emplace_back(p.cast<float>()));
-    const std::size_t made =
-        add_accessor(add_geometry(floats.data(), floats.size(), sizeof(floats[0])), float_type, floats.size(), "VEC3");
-    root_["accessors"][made]["min"] = {box.min().x(), box.min().y(), box.min().z()};
-    root_["accessors"][made]["max"] = {box.max().x(), box.max().y(), box.max().z()};
+    const std::size_t made = gltf_.add_accessor(gltf_.add_geometry(floats.data(), floats.size(), sizeof(floats[0])),
+                                                GlbFile::float_type, floats.size(), "VEC3");
+    gltf_.at("accessors", made)["min"] = {box.min().x(), box.min().y(), box.min().z()};
+    gltf_.at("accessors", made)["max"] = {box.max().x(), box.max().y(), box.max().z()};
     return made;
   }
 
   std::size_t add_uvs(const Soup& soup) {
-    if (compression_.quantized)
+    if (gltf_.compression().quantized)
       if (const auto quantized = quantized_uvs(soup.uvs()); !quantized.empty()) {
-        const std::size_t made = add_accessor(add_geometry(quantized.data(), quantized.size(), sizeof(quantized[0])),
-                                              unsigned_short_type, quantized.size(), "VEC2");
-        root_["accessors"][made]["normalized"] = true;
+        const std::size_t made =
+            gltf_.add_accessor(gltf_.add_geometry(quantized.data(), quantized.size(), sizeof(quantized[0])),
+                               GlbFile::unsigned_short_type, quantized.size(), "VEC2");
+        gltf_.at("accessors", made)["normalized"] = true;
         return made;
       }
     std::vector<Eigen::Vector2f> floats;
     for (const Vec2& uv : soup.uvs()) floats.emplace_back(static_cast<float>(uv.x()), static_cast<float>(1 - uv.y()));
-    return add_accessor(add_geometry(floats.data(), floats.size(), sizeof(floats[0])), float_type, floats.size(),
-                        "VEC2");
+    return gltf_.add_accessor(gltf_.add_geometry(floats.data(), floats.size(), sizeof(floats[0])), GlbFile::float_type,
+                              floats.size(), "VEC2");
   }
 
   json primitive(const TextureSet& set, const Vec3& centre, std::size_t material, double& scale) {
     const std::size_t position = add_positions(set.soup, centre, scale), uv = add_uvs(set.soup);
     const std::vector<Face>& faces = set.soup.faces();
-    const std::size_t indices =
-        add_accessor(add_geometry(faces.data(), 3 * faces.size(), 0), unsigned_int_type, 3 * faces.size(), "SCALAR");
+    const std::size_t indices = gltf_.add_accessor(gltf_.add_geometry(faces.data(), 3 * faces.size(), 0),
+                                                   GlbFile::unsigned_int_type, 3 * faces.size(), "SCALAR");
     return {{"attributes", {{"POSITION", position}, {"TEXCOORD_0", uv}}}, {"indices", indices}, {"material", material}};
   }
 
@@ -476,9 +368,9 @@ class GltfWriter {
     Affine to_world = Affine::Identity();
     to_world.linear() = world_to_camera(camera).transpose();
     to_world.translation() = camera.eye;
-    if (!root_.contains("cameras")) root_["cameras"] = json::array();
-    return add_to("nodes",
-                  {{"name", name}, {"camera", add_to("cameras", lens)}, {"matrix", column_major(to_world.matrix())}});
+    if (!gltf_.root().contains("cameras")) gltf_.root()["cameras"] = json::array();
+    return gltf_.add(
+        "nodes", {{"name", name}, {"camera", gltf_.add("cameras", lens)}, {"matrix", column_major(to_world.matrix())}});
   }
 
   const Progress& progress_;
@@ -486,33 +378,14 @@ class GltfWriter {
   std::optional<SceneRays> rays_;
   double size_ = 0;
   Box bounds_;
-  json root_;
-  std::string bytes_;
   std::vector<std::string> notes_;
-  json channels_ = json::array(), samplers_ = json::array();  ///< of the animation
   bool features_;
   const std::optional<Vec3>& eye_;  ///< whose colours are taken; nothing: means
-  GltfCompression compression_;
-  std::size_t decompressed_ = 0;  ///< bytes of compressed buffer views
+  GlbFile gltf_;
   std::map<const FeatureTexture*, std::vector<std::size_t>> feature_textures_;
   std::vector<const BakedObject*> object_order_;    ///< in which they were met
   std::map<const BakedObject*, json> object_sets_;  ///< the sets of each object in the extension
 };
-
-// Whether a file is one that write_gltf() made.
-bool is_own(const fs::path& file) {
-  const std::string bytes = read_file(file);
-  if (!bytes.starts_with("glTF") || bytes.size() < 20) return false;
-  std::size_t length = 0;
-  for (std::size_t k = 0; k < 4; ++k)
-    length |= static_cast<std::size_t>(static_cast<unsigned char>(bytes[12 + k])) << (8 * k);
-  const json root = json::parse(bytes.substr(20, length), nullptr, false);
-  return root.is_object() && root.value("/asset/generator"_json_pointer, "") == generator;
-}
-
-}  // namespace
-
-namespace {
 
 ExportReport write_glb(const Scene& scene, const fs::path& file, const ExportOptions& options, const Progress& progress,
                        bool features) {
@@ -521,13 +394,14 @@ ExportReport write_glb(const Scene& scene, const fs::path& file, const ExportOpt
   if (file.extension() != ".glb") throw FieldError("out", "must end in .glb, the extension of binary glTF files");
   options.sources.check_file(file);
   const auto refuse_foreign = [&] {
-    if (std::error_code error; fs::exists(file, error) && fs::file_size(file, error) > 0 && !is_own(file))
+    if (std::error_code error;
+        fs::exists(file, error) && fs::file_size(file, error) > 0 && !GlbFile::is_own(read_file(file)))
       throw FileError(file, "exists and is not a glTF file of Rebake, so it is not replaced; choose another name");
   };
   refuse_foreign();
   const GltfWriter document(scene, features, options, progress);
   refuse_foreign();  // once more: it may have appeared since
-  write_file_atomically(file, document.glb(), options.sources);
+  write_file_atomically(file, document.bytes(), options.sources);
   ExportReport report;
   report.notes = document.notes();
   if (!features) {
