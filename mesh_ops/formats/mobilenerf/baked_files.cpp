@@ -10,6 +10,7 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/mobilenerf/baked_layout.h"
 #include "mesh_ops/formats/mobilenerf/json_text.h"
+#include "mesh_ops/formats/mobilenerf/source_file.h"
 
 namespace rebake {
 
@@ -79,12 +80,7 @@ std::set<std::string> own_baked_files(const fs::path& folder) {
   names.insert(sidecar_names.begin(), sidecar_names.end());
   std::error_code error;
   if (!fs::is_regular_file(folder / "mlp.json", error) || !has_baked_decoder(folder)) return names;
-  try {
-    for (const fs::path& file : baked_files(folder)) names.insert(file.string());
-  } catch (const FileError&) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-      if (const std::string name = entry.path().filename().string(); is_baked_file_name(name)) names.insert(name);
-  }
+  names.merge(names_of_scene(folder, baked_files, is_baked_file_name));
   return names;
 }
 

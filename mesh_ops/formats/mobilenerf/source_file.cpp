@@ -20,4 +20,18 @@ std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFil
   return std::nullopt;
 }
 
+std::set<std::string> names_of_scene(const std::filesystem::path& folder,
+                                     std::vector<std::filesystem::path> (*files)(const std::filesystem::path& folder),
+                                     bool (*is_file_name)(const std::string& name)) {
+  std::set<std::string> names;
+  try {
+    for (const std::filesystem::path& file : files(folder)) names.insert(file.string());
+  } catch (const FileError&) {
+    std::error_code error;
+    for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, error))
+      if (const std::string name = entry.path().filename().string(); is_file_name(name)) names.insert(name);
+  }
+  return names;
+}
+
 }  // namespace rebake

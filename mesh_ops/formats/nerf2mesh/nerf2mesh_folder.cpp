@@ -86,12 +86,7 @@ std::set<std::string> own_nerf2mesh_files(const fs::path& folder) {
   std::set<std::string> names{"mlp.json"};
   std::error_code error;
   if (!fs::is_regular_file(folder / "mlp.json", error) || !has_nerf2mesh_decoder(folder)) return names;
-  try {
-    for (const fs::path& file : nerf2mesh_files(folder)) names.insert(file.string());
-  } catch (const FileError&) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-      if (const std::string name = entry.path().filename().string(); is_file_name(name)) names.insert(name);
-  }
+  names.merge(names_of_scene(folder, nerf2mesh_files, is_file_name));
   return names;
 }
 
