@@ -90,6 +90,16 @@ PlacedNode object_with_selection(const Scene& scene, const NodeRef& node) {
   return objects_with_selection(scene, node).front();
 }
 
+std::vector<PlacedNode> objects_of_each(const Scene& scene, const std::vector<NodeRef>& nodes,
+                                        std::vector<PlacedNode> (*find)(const Scene&, const std::optional<NodeRef>&)) {
+  std::vector<PlacedNode> objects;
+  std::set<NodeId> found;
+  for (const NodeRef& node : nodes)
+    for (PlacedNode& placed : find(scene, node))
+      if (found.insert(placed.node->id).second) objects.push_back(std::move(placed));
+  return objects;
+}
+
 std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vector<TextureSet> sets) {
   std::erase_if(sets, [](const TextureSet& set) { return set.soup.triangle_count() == 0; });
   if (sets.empty()) return nullptr;

@@ -28,6 +28,10 @@ std::vector<PlacedNode> objects_with_selection(const Scene& scene, const std::op
 /// The object `node`. Throws EditError if it is a group, is locked, or has no selected triangle.
 PlacedNode object_with_selection(const Scene& scene, const NodeRef& node);
 
+/// The objects that `find` gives for one node after the other, each object once.
+std::vector<PlacedNode> objects_of_each(const Scene& scene, const std::vector<NodeRef>& nodes,
+                                        std::vector<PlacedNode> (*find)(const Scene&, const std::optional<NodeRef>&));
+
 /// A copy of the object with these texture sets, without empty ones; null if no triangle is left.
 std::shared_ptr<const BakedObject> with_sets(const BakedObject& object, std::vector<TextureSet> sets);
 

@@ -58,16 +58,9 @@ Ground wanted_ground(const Scene& scene, const GroundEdit& edit) {
     if (!std::isfinite(lowest)) throw EditError("nothing is visible, so there is no lowest point");
     return {Vec3::UnitY(), lowest};
   }
-  if (edit.selection && edit.nodes.empty()) return fitted(objects_with_selection(scene, std::nullopt));
-  if (edit.selection) {
-    std::vector<PlacedNode> nodes;
-    for (const NodeRef& node : edit.nodes)
-      for (PlacedNode& placed : objects_with_selection(scene, node))
-        if (std::none_of(nodes.begin(), nodes.end(),
-                         [&](const PlacedNode& other) { return other.node->id == placed.node->id; }))
-          nodes.push_back(std::move(placed));
-    return fitted(nodes);
-  }
+  if (edit.selection)
+    return fitted(edit.nodes.empty() ? objects_with_selection(scene, std::nullopt)
+                                     : objects_of_each(scene, edit.nodes, objects_with_selection));
   if (edit.points.points.size() != 3)
     throw FieldError("points", fmt::format("must be three points, but has {}", edit.points.points.size()));
   try {
@@ -97,8 +90,7 @@ std::string whole_title(const GroundEdit& /*edit*/) { return "Set the ground pla
 REBAKE_DESCRIBE_EDIT(
     GroundEdit,
     "Sets the ground plane for drop, snapping and the grid; its normal is the up direction of sky light. By default, "
-    "the "
-    "ground is y = 0.",
+    "the ground is y = 0.",
     (auto& edit, auto& visit) {
       visit("height", edit.height, Need::optional, "level plane at this y", Unit::length);
       visit("foot", edit.foot, Need::optional, "level plane at the lowest point of all visible objects");

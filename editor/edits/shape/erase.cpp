@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "editor/edits/describe_edit.h"
 #include "editor/edits/scene_change.h"
 
@@ -37,13 +35,7 @@ Outcome erased(const Scene& scene, const std::vector<PlacedNode>& targets,
 std::vector<PlacedNode> targets_of(const Scene& scene, const Erase& edit) {
   if (edit.nodes.empty()) return selectable(scene, edit.node);
   if (edit.node) throw FieldError("nodes", "cannot be combined with node");
-  std::vector<PlacedNode> targets;
-  for (const NodeRef& node : edit.nodes)
-    for (PlacedNode& placed : selectable(scene, node))
-      if (std::none_of(targets.begin(), targets.end(),
-                       [&](const PlacedNode& other) { return other.node->id == placed.node->id; }))
-        targets.push_back(std::move(placed));
-  return targets;
+  return objects_of_each(scene, edit.nodes, selectable);
 }
 
 }  // namespace
@@ -84,10 +76,7 @@ std::string change_title(const Erase&, const SceneChange& change, const Erase*) 
 }
 
 REBAKE_DESCRIBE_EDIT(
-    Erase,
-    "Makes texels inside a region transparent, to cut through triangles; "
-    "all "
-    "other texels stay bit for bit.",
+    Erase, "Makes texels inside a region transparent, to cut through triangles; all other texels stay bit for bit.",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
             "only this node and its children; default: all visible, unlocked objects");
