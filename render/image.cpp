@@ -1,7 +1,6 @@
 #include "render/image.h"
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include "mesh_ops/formats/images/picture_codecs.h"
 #include "mesh_ops/formats/images/png_writer.h"
 #include "mesh_ops/scene/scene_light.h"
+#include "render/picture_mark.h"
 
 namespace rebake {
 
@@ -36,55 +36,6 @@ std::string extension_of(const std::filesystem::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
-}
-
-constexpr std::string_view software_text{"Software\0Rebake", 15};
-constexpr std::size_t after_header = 8 + 25;  // the signature and the chunk IHDR
-
-// Adds a text chunk that names the program (PNG, section 11.3.4.3).
-std::string with_software(const std::string& png) {
-  std::string chunk = "tEXt" + std::string(software_text);
-  const uLong sum = crc32(0, reinterpret_cast<const Bytef*>(chunk.data()), static_cast<uInt>(chunk.size()));
-  const auto big_endian = [](std::uint64_t value) {
-    std::string bytes;
-    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 255U);
-    return bytes;
-  };
-  return png.substr(0, after_header) + big_endian(software_text.size()) + chunk + big_endian(sum) +
-         png.substr(after_header);
-}
-
-// Adds a comment that names the program, after the start of the image (JPEG, section B.2.4.5).
-std::string with_comment(const std::string& jpeg) {
-  constexpr std::size_t start = 2, length_field = 2;
-  const std::string comment = "Rebake";
-  return jpeg.substr(0, start) + "\xff\xfe" + '\0' + static_cast<char>(comment.size() + length_field) + comment +
-         jpeg.substr(start);
-}
-
-// Adds metadata that name the program (WebP container specification, sections "Extended File Format" and "Metadata";
-// Exif 2.32, section 4.6).
-std::string with_exif(const std::string& webp, int width, int height, bool has_alpha) {
-  const auto little_endian = [](std::size_t value, int bytes) {
-    std::string text;
-    for (int k = 0; k < bytes; ++k) text += static_cast<char>(value >> 8 * k & 255U);
-    return text;
-  };
-  const auto chunk = [&](const std::string& name, const std::string& bytes) {
-    return name + little_endian(bytes.size(), 4) + bytes + std::string(bytes.size() % 2, '\0');
-  };
-  constexpr std::size_t software = 0x131, ascii = 2;
-  const std::string name("Rebake\0", 7), header("II*\0", 4);
-  const std::size_t first_table = 8, after_table = first_table + 2 + 12 + 4;
-  const std::string exif = header + little_endian(first_table, 4) + little_endian(1, 2) + little_endian(software, 2) +
-                           little_endian(ascii, 2) + little_endian(name.size(), 4) + little_endian(after_table, 4) +
-                           little_endian(0, 4) + name;
-  constexpr std::size_t exif_flag = 0x08, alpha_flag = 0x10, container_header = 12;
-  const std::string extended = little_endian(exif_flag | (has_alpha ? alpha_flag : 0), 4) +
-                               little_endian(static_cast<std::size_t>(width - 1), 3) +
-                               little_endian(static_cast<std::size_t>(height - 1), 3);
-  const std::string body = "WEBP" + chunk("VP8X", extended) + webp.substr(container_header) + chunk("EXIF", exif);
-  return "RIFF" + little_endian(body.size(), 4) + body;
 }
 
 // The first bytes of a file; fewer if it is shorter.
@@ -121,9 +72,10 @@ std::string encoded(const Image& image, const std::filesystem::path& path) {
   const std::string extension = extension_of(path);
   const auto format = std::find_if(written_formats.begin(), written_formats.end(),
                                    [&](const WrittenFormat& one) { return one.extension == extension; });
+  const bool has_alpha = !image.alpha.empty() && holds_alpha(path);
   if (format == written_formats.end())
-    return with_software(
-        encode_png(image.width, image.height, image.alpha.empty() ? 3 : 4, pixels_of(image), compression_level));
+    return with_mark(encode_png(image.width, image.height, has_alpha ? 4 : 3, pixels_of(image), compression_level),
+                     image.width, image.height, has_alpha);
   const PictureCodecs& codecs = picture_codecs(path);
   std::string bytes, error;
   bool done = false;
@@ -140,17 +92,13 @@ std::string encoded(const Image& image, const std::filesystem::path& path) {
       for (std::size_t c = 0; c < 3; ++c) pixels.push_back(light[image.rgb[3 * p + c]] * alpha);
       if (!image.alpha.empty()) pixels.push_back(alpha);
     }
-    done = codecs.encode_exr(image.width, image.height, channels, {}, pixels.data(), bytes, error);
+    done = codecs.encode_exr(image.width, image.height, channels, {openexr_mark}, pixels.data(), bytes, error);
   } else {
-    const bool has_alpha = !image.alpha.empty() && holds_alpha(path);
     const std::vector<std::uint8_t> pixels = has_alpha ? pixels_of(image) : image.rgb;
     done = codecs.encode(format->name, image.width, image.height, has_alpha ? 4 : 3, pixels.data(), bytes, error);
   }
   if (!done) throw FileError(path, "cannot be encoded: " + picture_problem(error, path));
-  if (format->name == std::string_view("jpeg")) return with_comment(bytes);
-  return format->name == std::string_view("webp")
-             ? with_exif(bytes, image.width, image.height, !image.alpha.empty() && holds_alpha(path))
-             : bytes;
+  return with_mark(bytes, image.width, image.height, has_alpha);
 }
 
 }  // namespace
@@ -215,23 +163,7 @@ void check_picture_path(const std::filesystem::path& path, const SourceGuard& gu
 
 bool is_picture_file(const std::filesystem::path& path) { return begins_as_picture(beginning_of(path)); }
 
-bool is_rendered_picture(const std::filesystem::path& path) {
-  const std::string bytes = beginning_of(path);
-  if (bytes.starts_with("\x89PNG")) return bytes.find(software_text) != std::string::npos;
-  if (bytes.starts_with("\x76\x2f\x31\x01")) {
-    constexpr std::size_t header = 1 << 16;  // attributes may be long
-    return beginning_of(path, header).find(std::string_view("oftware\0string\0\6\0\0\0Rebake", 25)) !=
-           std::string::npos;
-  }
-  if (bytes.starts_with("RIFF")) {
-    constexpr std::streamoff end = 8;  // the program's name, 0 and a byte of padding
-    std::ifstream file(path, std::ios::binary);
-    std::string last(end, '\0');
-    file.seekg(-end, std::ios::end);
-    return file.read(last.data(), end) && last == std::string_view("Rebake\0\0", 8);
-  }
-  return bytes.starts_with(std::string_view("\xff\xd8\xff\xfe\0\x08Rebake", 12));
-}
+bool is_rendered_picture(const std::filesystem::path& path) { return has_mark(path); }
 
 void write_picture(const Image& image, const std::filesystem::path& path, const SourceGuard& guard) {
   check_picture_path(path, guard);

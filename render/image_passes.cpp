@@ -15,6 +15,7 @@
 #include "mesh_ops/formats/images/picture_codecs.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/scene/scene_light.h"
+#include "render/picture_mark.h"
 
 namespace rebake {
 
@@ -216,10 +217,12 @@ void write_channels(const ImagePasses& passes, const std::vector<const ImagePass
     for (std::size_t p = 0; p < pixels; ++p) interleaved[p * channels.size() + c] = channels[c]->values[p];
   }
   std::string bytes, error;
-  if (!picture_codecs(path).encode_exr(passes.width, passes.height, names, passes.attributes, interleaved.data(), bytes,
+  std::vector<std::pair<std::string, std::string>> attributes{openexr_mark};
+  attributes.insert(attributes.end(), passes.attributes.begin(), passes.attributes.end());
+  if (!picture_codecs(path).encode_exr(passes.width, passes.height, names, attributes, interleaved.data(), bytes,
                                        error))
     throw FileError(path, "cannot be encoded: " + picture_problem(error, path));
-  write_file_atomically(path, bytes, guard);
+  write_file_atomically(path, with_mark(bytes, passes.width, passes.height, false), guard);
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ class Film {
   void check_replaces_video() const {
     std::error_code error;
     if (!fs::exists(action_.out, error) || fs::file_size(action_.out, error) == 0) return;
-    if (read_file(action_.out).find(video_mark) == std::string::npos)
+    if (!is_marked_video(read_file(action_.out)))
       throw FileError(action_.out, "exists and is not a video of Rebake, so it is not replaced; choose another name");
   }
 
@@ -189,7 +189,7 @@ class Film {
       throw Error(fmt::format("ffmpeg failed with exit status {}; no video was written. Its pictures are in {}",
                               *status, pictures.string()));
     check_replaces_video();  // once more: it may have appeared since
-    write_file_atomically(action_.out, read_file(partial.file), sources_);
+    write_file_atomically(action_.out, with_mark(read_file(partial.file), action_.out), sources_);
   }
 
   Session& session_;

@@ -96,11 +96,13 @@ std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json
   return pictures;
 }
 
-// Someone may have put a picture of their own under such a name. A damaged one is rendered again.
+// Someone may have put a picture of their own under such a name, or retouched one.
 void refuse_foreign(const std::vector<fs::path>& pictures) {
   for (const fs::path& picture : pictures)
     if (std::error_code error; fs::file_size(picture, error) > 0 && !is_rendered_picture(picture))
-      throw FileError(picture, "was not rendered by Rebake, so it is no picture of this film; move it elsewhere");
+      throw FileError(picture,
+                      "was not rendered by Rebake, or was changed or damaged since, so it is no picture of this film; "
+                      "move it elsewhere");
 }
 
 }  // namespace

@@ -67,6 +67,28 @@ TEST(Image, RecognisesWhatItWroteAndWritesTheSameBytes) {
   EXPECT_FALSE(is_rendered_picture(folder.path() / "foreign.webp"));
 }
 
+// Retouched pictures are somebody's work, also if a program keeps the metadata.
+TEST(Image, DoesNotRecogniseWhatSomeoneChanged) {
+  const TemporaryFolder folder;
+  for (const char* extension : {".png", ".jpg", ".webp", ".exr"}) {
+    const auto path = folder.path() / (std::string("a") + extension);
+    write_picture(colorful(), path, {});
+    const std::string bytes = read_file(path);
+    for (std::size_t at = 4; at < bytes.size(); at += 1 + bytes.size() / 300) {
+      std::string changed = bytes;
+      changed[at] = static_cast<char>(changed[at] ^ 1);
+      write_text(path, changed);
+      EXPECT_FALSE(is_rendered_picture(path)) << extension << " at " << at;
+    }
+    write_text(path, bytes + "more");
+    EXPECT_FALSE(is_rendered_picture(path)) << extension;
+    write_text(path, bytes.substr(0, bytes.size() - 1));
+    EXPECT_FALSE(is_rendered_picture(path)) << extension;
+    write_text(path, bytes);
+    EXPECT_TRUE(is_rendered_picture(path)) << extension;
+  }
+}
+
 TEST(Image, JpegsAreCloseToTheOriginal) {
   const TemporaryFolder folder;
   write_picture(colorful(), folder.path() / "a.jpg", {});

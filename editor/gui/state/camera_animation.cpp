@@ -27,7 +27,8 @@ void refuse_other_pictures(const fs::path& folder, std::size_t count) {
     const fs::path picture = folder / name_of(k);
     if (!fs::exists(fs::symlink_status(picture, error))) continue;
     if (fs::is_symlink(picture, error) || !is_rendered_picture(picture))
-      throw FileError(picture, "exists and was not rendered by Rebake, or is a link; choose a new folder");
+      throw FileError(picture,
+                      "exists and was not rendered by Rebake, was changed since, or is a link; choose a new folder");
     refuse_replacing_work(picture);
     refuse_replacing_captured(picture);
   }

@@ -54,8 +54,10 @@ TEST_F(FilmActionTest, GoesOnAfterAnInterruptionWithTheSamePictures) {
   run(film(R"("out": "{here}/film")"));
   EXPECT_EQ(folder_bytes(at("film")), all);
   EXPECT_NE(said().find("3 of 5 pictures exist already"), std::string::npos);
-  // A damaged picture is rendered again, and what a killed run left is removed.
-  write_text(at("film/00001.png"), all.at("00001.png").substr(0, 100));
+  // A picture that is not as it was written may hold somebody's work. What a killed run left is removed.
+  write_text(at("film/00001.png"), all.at("00001.png") + "retouched");
+  expect_error(film(R"("out": "{here}/film")"), "or was changed or damaged since");
+  fs::remove(at("film/00001.png"));
   write_text(at("film/00003.png.1234abcd.partial"), "half of a picture");
   run(film(R"("out": "{here}/film")"));
   EXPECT_EQ(folder_bytes(at("film")), all);
@@ -126,12 +128,29 @@ TEST_F(FilmActionTest, KeepsThePicturesIfTheEncoderFails) {
   expect_error(film(R"("out": "{here}/a.mp4")"), "ffmpeg failed with exit status 7");
   EXPECT_FALSE(fs::exists(at("a.mp4")));
   EXPECT_TRUE(fs::exists(at("a.mp4.pictures/00004.png")));
-  encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");
+  encoder(R"(for last; do :; done; printf 'a video' > "$last")");
   said();
   run(film(R"("out": "{here}/a.mp4")"));
   EXPECT_NE(said().find("5 of 5 pictures exist already"), std::string::npos);
-  EXPECT_EQ(read_file(at("a.mp4")), "Made by Rebake");
+  EXPECT_TRUE(read_file(at("a.mp4")).starts_with("a video"));
   EXPECT_FALSE(fs::exists(at("a.mp4.pictures")));
+}
+
+// Also not if the other program copies the text that names Rebake.
+TEST_F(FilmActionTest, ReplacesItsOwnVideosButNotThoseCutFromThem) {
+  encoder(R"(for last; do :; done; printf 'a video' > "$last")");
+  for (const char* name : {"a.mp4", "a.webm"}) {
+    const std::string options = fmt::format(R"("out": "{{here}}/{}")", name);
+    run(film(options.c_str()));
+    const std::string first = read_file(at(name));
+    run(film(options.c_str()));
+    EXPECT_EQ(read_file(at(name)), first);
+    for (const std::string& cut : {"cut " + first, first + " and music", first.substr(1)}) {
+      write_text(at(name), cut);
+      expect_error(film(options.c_str()), "is not a video of Rebake");
+      EXPECT_EQ(read_file(at(name)), cut);
+    }
+  }
 }
 
 // Someone may have put a picture of their own among those of a video that failed.
@@ -140,7 +159,7 @@ TEST_F(FilmActionTest, PicturesOfOthersAmongThoseOfAVideoAreKept) {
   expect_error(film(R"("out": "{here}/a.mp4")"), "ffmpeg failed with exit status 7");
   const std::string mine = "\x89PNG of somebody";
   write_text(at("a.mp4.pictures/00003.png"), mine);
-  encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");
+  encoder(R"(for last; do :; done; printf 'a video' > "$last")");
   for (const char* options : {R"("out": "{here}/a.mp4", "samples": 1)", R"("out": "{here}/a.mp4")"})
     expect_error(film(options), "was not rendered by Rebake");
   EXPECT_EQ(read_file(at("a.mp4.pictures/00003.png")), mine);
@@ -148,7 +167,7 @@ TEST_F(FilmActionTest, PicturesOfOthersAmongThoseOfAVideoAreKept) {
 
 // A folder of pictures that was asked for is never taken for the temporary pictures of a video.
 TEST_F(FilmActionTest, VideosDoNotRemovePicturesThatWereAskedFor) {
-  encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");
+  encoder(R"(for last; do :; done; printf 'a video' > "$last")");
   run(film(R"("out": "{here}/a.mp4.pictures")"));
   const auto pictures = folder_bytes(at("a.mp4.pictures"));
   expect_error(film(R"("out": "{here}/a.mp4")"), "because they were asked for");
@@ -157,7 +176,7 @@ TEST_F(FilmActionTest, VideosDoNotRemovePicturesThatWereAskedFor) {
   encoder("exit 7");
   expect_error(film(R"("out": "{here}/b.mp4")"), "ffmpeg failed with exit status 7");
   run(film(R"("out": "{here}/b.mp4.pictures")"));
-  encoder(R"(for last; do :; done; printf 'Made by Rebake' > "$last")");
+  encoder(R"(for last; do :; done; printf 'a video' > "$last")");
   expect_error(film(R"("out": "{here}/b.mp4")"), "because they were asked for");
   EXPECT_TRUE(fs::exists(at("b.mp4.pictures/00004.png")));
 }

@@ -122,7 +122,6 @@ class Codecs : public rebake::PictureCodecs {
       spec.format = OIIO::TypeDesc::HALF;
     }
     spec.attribute("oiio:ColorSpace", "Linear");
-    spec.attribute("Software", "Rebake");
     spec.attribute("DateTime", "");  // otherwise OpenImageIO writes the present time, and equal pictures differ
     for (const auto& [name, text] : attributes) spec.attribute(name, text);
     return encode_as("openexr", spec, OIIO::TypeDesc::FLOAT, pixels, bytes, error);
