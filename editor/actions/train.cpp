@@ -177,6 +177,8 @@ void run(Session& session, const TrainAction& action, const TrainingObserver& ob
   const fs::path out = absolute_path(action.out), work = out.string() + ".training";
   check_report_is_ours(out / report_name);
   const bool replaces = has_content(out) && observer.may_replace;
+  if (replaces)
+    session.say(fmt::format("note: {} exists already; its scene is replaced after the training", out.string()));
   Capture capture = read_capture(options.source, options.held_out, Scene{}.background, session.progress);
   for (const std::string& note : capture.notes) session.say(note);
   TrainingRun training(options, std::move(capture), Scene{}.background, work, sources_of(session, observer),

@@ -125,6 +125,11 @@ TEST_F(Train, WhatAppearsInTheFolderDuringTheTrainingIsKept) {
   expect_error(train, "was written by something else during the training");
   EXPECT_EQ(folder_bytes(at("out")), saved);
   EXPECT_TRUE(fs::exists(at("out.training"))) << "it can go on";
+  // A folder that is there before the training is replaced, which is said before.
+  said();
+  run(train);
+  const std::string words = said();
+  EXPECT_LT(words.find("out exists already; its scene is replaced after the training"), words.find("stage"));
 }
 
 TEST_F(Train, ExposuresGetGainsWhereTheyDiffer) {
