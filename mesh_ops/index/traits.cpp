@@ -3,7 +3,9 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "mesh_ops/index/footprint.h"
 
@@ -113,6 +115,16 @@ void decode_colors(const Decoder& decoder, TexelTraits* looks, Eigen::Index coun
   set_colors(mean, looks);
 }
 
+// Normal times twice the area. Zero if it is not larger than the rounding of the corners: the normals of such triangles
+// would be random.
+Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, cross = ab.cross(ac);
+  const double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), c.cwiseAbs().maxCoeff()});
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * largest * (ab.stableNorm() + ac.stableNorm());
+  if (cross.stableNorm() <= rounding) return Vec3::Zero();
+  return cross;
+}
+
 }  // namespace
 
 std::vector<TexelTraits> texel_traits(const TextureSet& set, const Decoder& decoder) {
@@ -150,7 +162,7 @@ std::vector<TriangleTraits> triangle_traits(const BakedObject& object,
     tbb::parallel_for(std::size_t{0}, soup.triangle_count(), [&](std::size_t f) {
       const Face& face = soup.faces()[f];
       const std::vector<Vec3>& p = soup.positions();
-      const Vec3 cross = (p[face[1]] - p[face[0]]).cross(p[face[2]] - p[face[0]]);
+      const Vec3 cross = area_vector(p[face[0]], p[face[1]], p[face[2]]);
       const TexelTraits& look = (*looks[s])[f];
       TriangleTraits& one = traits[first + f];
       one.features = look.features;

@@ -15,7 +15,7 @@ struct TriangleTraits {
   /// Share of opaque texels among those whose centres are inside; if that is 0, share of the area that opaque texels
   /// cover. 0 if that is below a millionth.
   float opacity = 0;
-  double area = 0;                ///< in square object units
+  double area = 0;                ///< in square object units; 0 if it is not larger than the rounding of the corners
   std::array<float, 3> normal{};  ///< unit vector, or zero if the triangle has no area
 };
 

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "mesh_ops/index/index.h"
 #include "mesh_ops/index/traits.h"
 #include "mesh_ops/select/picture.h"
 #include "mesh_ops/select/regions.h"
@@ -152,6 +153,25 @@ TEST(SelectionProperty, ATriangleIsLikeItself) {
     const TriangleAppearance model = mean_appearance(placed, {TriangleSet{1}});
     for (const double degrees : {0.0, 1e-9, 1.0, 90.0})
       EXPECT_EQ(count(triangles_like(placed[0], model, {{}, {}, {}, {}, degrees})), 1U) << degrees;
+  }
+}
+
+// Corners on one line, of which rounding makes triangles with random normals, also after transforms.
+TEST(SelectionProperty, CollinearCornersHaveNoOrientation) {
+  std::mt19937 random(10);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> exponent(-8, 8);
+  const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
+  for (int round = 0; round < 2000; ++round) {
+    BakedObject object =
+        triangle_with({Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, std::vector<bool>(texture_side * texture_side, true));
+    const Vec3 start = vector() * std::pow(10, exponent(random)), along = vector() * std::pow(10, exponent(random));
+    Affine motion = Affine::Identity();
+    motion.linear() << vector(), vector(), vector();
+    motion.translation() = vector();
+    object.sets[0].soup = Soup({motion * start, motion * Vec3(start + along), motion * Vec3(start + 2.7 * along)},
+                               object.sets[0].soup.uvs(), object.sets[0].soup.faces());
+    EXPECT_TRUE(((*traits_of(object))[0].normal == std::array<float, 3>{})) << round;
   }
 }
 
