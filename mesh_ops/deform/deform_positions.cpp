@@ -51,7 +51,7 @@ DeformedPositions deform_positions(const BakedObject& object, const WeldedCorner
   rotations.assign(count, Mat3::Identity());
   std::vector<double>& determinants = result.determinants;
   determinants.assign(count, 1);
-  std::vector<std::uint8_t> defined(count, 1), is_number(count, 1);
+  std::vector<std::uint8_t> defined(count, 1), is_number(count, 1), changed(count, 0);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     if (!world[i].allFinite() || !moved.points[i].allFinite() || !moved.jacobians[i].allFinite()) {
       moved.points[i] = world[i];
@@ -60,6 +60,7 @@ DeformedPositions deform_positions(const BakedObject& object, const WeldedCorner
     }
     determinants[i] = moved.jacobians[i].determinant();
     if (moved.points[i] == world[i] && moved.jacobians[i].isIdentity(0)) return;
+    changed[i] = 1;
     const LocalRotation local = local_orthogonal(moved.jacobians[i] * scales);
     defined[i] = local.defined ? 1 : 0;
     rotations[i] = frame.transpose() * local.rotation * frame;
@@ -77,6 +78,7 @@ DeformedPositions deform_positions(const BakedObject& object, const WeldedCorner
   }
   bool any = false;  // any finite place so far
   for (std::size_t i = 0; i < count; ++i) {
+    report.changed += changed[i];
     report.not_finite += is_number[i] != 0 ? 0 : 1;
     report.outside += !moved.outside.empty() && moved.outside[i] != 0 ? 1 : 0;
     report.folded += determinants[i] <= 0 ? 1 : 0;

@@ -91,7 +91,7 @@ namespace {
 
 std::string in_words(const std::string& name, const DeformationReport& report) {
   std::string line =
-      fmt::format("{} vertices of \"{}\" deformed, minimum det J {:.3g}", report.points, name, report.min_determinant);
+      fmt::format("{} vertices of \"{}\" deformed, minimum det J {:.3g}", report.changed, name, report.min_determinant);
   if (report.folded > 0)
     line +=
         fmt::format("; {} are folded or collapsed (det J ≤ 0): select_folded selects their triangles", report.folded);
@@ -119,6 +119,7 @@ Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, 
           "mean_value, or "
           "a coarser wrap or a larger cage",
           made.report.opaque_outside, made.report.points, set.nodes[k].node->name));
+    if (made.report.changed == 0) continue;
     // Renderer and files store positions as float.
     constexpr double farthest = 1e30;
     if (const Box box = transformed(made.object->bounds(), set.nodes[k].to_world);

@@ -40,6 +40,18 @@ TEST_F(Titles, CountTrianglesThatDeformationsMoved) {
   EXPECT_LT(std::stoul(part.substr(std::string("Bent by 20°: ").size())), selected) << part;
 }
 
+// The part of a below `from` stays, and b, which lies higher, is twisted.
+TEST_F(Titles, NameOnlyObjectsThatALimitedDeformationMoves) {
+  act(document_, R"({"op": "transform", "node": "b", "translate": [0, 10, 0]})");
+  act(document_, R"({"op": "select", "all": true})");
+  const auto before = find(document_.scene(), "a")->object;
+  EXPECT_EQ(title_after(R"({"op": "twist", "degrees": 30, "origin": [0, 0, 0], "from": 5, "to": 20})"),
+            "Twisted by 30°: 256 triangles of b");
+  EXPECT_EQ(find(document_.scene(), "a")->object, before);
+  EXPECT_EQ(title_after(R"({"op": "twist", "degrees": 30, "origin": [0, 0, 0], "from": 50, "to": 60})"),
+            "Twisted by 30°: 0 triangles");
+}
+
 TEST_F(Titles, CountWhatAnEditChanged) {
   act(document_, R"({"op": "select", "node": "b", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"})");
   const std::string part = std::to_string(count(*find(document_.scene(), "b")->selection)) + " triangles";
