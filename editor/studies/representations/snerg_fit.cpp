@@ -152,12 +152,14 @@ class Fit {
       any = any || sample.corner[k] >= 0;
     }
     if (!any) return false;
-    sample.value.fill(0);
+    Values sums{};  // local, so that compilers vectorise the inner loop
     for (std::size_t k = 0; k < 8; ++k) {
       if (sample.corner[k] < 0) continue;
+      const float weight = sample.weight[k];
       const float* value = adam_.values(static_cast<std::size_t>(sample.corner[k]));
-      for (std::size_t c = 0; c < snerg_channels; ++c) sample.value[c] += sample.weight[k] * value[c];
+      for (std::size_t c = 0; c < snerg_channels; ++c) sums[c] += weight * value[c];
     }
+    sample.value = sums;
     return true;
   }
 
@@ -230,12 +232,14 @@ class Fit {
     for (auto sample = samples.rbegin(); sample != samples.rend(); ++sample) {
       float own = 0;
       for (std::size_t c = 0; c < 7; ++c) own += slope[c] * sample->value[c];
+      Values by_value;
+      std::copy(slope.begin(), slope.end(), by_value.begin());
+      by_value[snerg_alpha] = -behind;
       for (std::size_t k = 0; k < 8; ++k) {
         if (sample->corner[k] < 0) continue;
         float* gradient = adam_.gradient(lane, static_cast<std::size_t>(sample->corner[k]));
         const float share = sample->weight[k] * sample->light;
-        for (std::size_t c = 0; c < 7; ++c) gradient[c] += share * slope[c];
-        gradient[snerg_alpha] -= share * behind;
+        for (std::size_t c = 0; c < snerg_channels; ++c) gradient[c] += share * by_value[c];
       }
       behind = own + (1 - sample->value[snerg_alpha]) * behind;
     }

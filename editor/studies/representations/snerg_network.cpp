@@ -14,27 +14,36 @@ constexpr std::size_t weights0 = 0, bias0 = weights0 + width * inputs, weights1 
                       bias1 = weights1 + width * width, weights2 = bias1 + width, bias2 = weights2 + outputs * width,
                       parameters = bias2 + outputs;
 
+// Sums are in local arrays, which nothing else refers to, so that compilers vectorise the inner loops.
+
+// `by_input`: weights [input][output].
 template <std::size_t In, std::size_t Out>
-void layer(const float* weights, const float* bias, const std::array<float, In>& in, std::array<float, Out>& out) {
-  for (std::size_t o = 0; o < Out; ++o) {
-    float sum = bias[o];
-    for (std::size_t i = 0; i < In; ++i) sum += weights[o * In + i] * in[i];
-    out[o] = sum;
+void layer(const float* by_input, const float* bias, const std::array<float, In>& in, std::array<float, Out>& out) {
+  std::array<float, Out> sums;
+  std::copy_n(bias, Out, sums.begin());
+  for (std::size_t i = 0; i < In; ++i) {
+    const float value = in[i];
+    for (std::size_t o = 0; o < Out; ++o) sums[o] += by_input[i * Out + o] * value;
   }
+  out = sums;
 }
 
-// Adds gradients of weights and bias; `slope_in`: gradient of the layer's input.
+// Adds gradients of weights [output][input] and bias; `slope_in`: gradient of the layer's input.
 template <std::size_t In, std::size_t Out>
 void layer_back(const float* weights, const std::array<float, In>& in, const std::array<float, Out>& slope,
                 float* weights_slope, float* bias_slope, std::array<float, In>& slope_in) {
-  slope_in.fill(0);
+  const std::array<float, In> values = in;
+  std::array<float, In> sums{};
   for (std::size_t o = 0; o < Out; ++o) {
-    bias_slope[o] += slope[o];
-    for (std::size_t i = 0; i < In; ++i) {
-      weights_slope[o * In + i] += slope[o] * in[i];
-      slope_in[i] += slope[o] * weights[o * In + i];
-    }
+    const float one = slope[o];
+    if (one == 0) continue;  // rectified
+    bias_slope[o] += one;
+    float* row_slope = weights_slope + o * In;
+    for (std::size_t i = 0; i < In; ++i) row_slope[i] += one * values[i];
+    const float* row = weights + o * In;
+    for (std::size_t i = 0; i < In; ++i) sums[i] += one * row[i];
   }
+  slope_in = sums;
 }
 
 template <std::size_t N>
@@ -61,6 +70,18 @@ SnergNetwork::SnergNetwork() : adam_(1, std::vector<float>(parameters, 0.005F)) 
   fill(weights1, bias1, width);
   fill(weights2, bias2, width);
   for (std::size_t k = bias2; k < parameters; ++k) adam_.values(0)[k] = -3;  // adds little at first
+  order_by_input();
+}
+
+void SnergNetwork::order_by_input() {
+  const auto order = [&](std::size_t weights, std::size_t in, std::size_t out) {
+    for (std::size_t o = 0; o < out; ++o)
+      for (std::size_t i = 0; i < in; ++i) by_input_[weights + i * out + o] = adam_.values(0)[weights + o * in + i];
+  };
+  by_input_.resize(parameters);
+  order(weights0, inputs, width);
+  order(weights1, width, width);
+  order(weights2, width, outputs);
 }
 
 std::array<float, outputs> SnergNetwork::forward(const Eigen::Vector3f& direction, const std::array<float, 7>& sum,
@@ -68,12 +89,12 @@ std::array<float, outputs> SnergNetwork::forward(const Eigen::Vector3f& directio
   const auto encoded = encoded_direction(direction.cast<double>());
   for (std::size_t k = 0; k < encoded.size(); ++k) pass.input[k] = static_cast<float>(encoded[k]);
   std::copy(sum.begin(), sum.end(), pass.input.begin() + SnergDecoder::encoding);
-  const float* p = adam_.values(0);
-  layer(p + weights0, p + bias0, pass.input, pass.first);
+  const float *p = adam_.values(0), *weights = by_input_.data();
+  layer(weights + weights0, p + bias0, pass.input, pass.first);
   rectify(pass.first);
-  layer(p + weights1, p + bias1, pass.first, pass.second);
+  layer(weights + weights1, p + bias1, pass.first, pass.second);
   rectify(pass.second);
-  layer(p + weights2, p + bias2, pass.second, pass.output);
+  layer(weights + weights2, p + bias2, pass.second, pass.output);
   for (float& value : pass.output) value = 1 / (1 + std::exp(-value));
   return pass.output;
 }
@@ -98,6 +119,12 @@ std::array<float, 7> SnergNetwork::backward(std::size_t lane, const Pass& pass,
 
 void SnergNetwork::step(std::size_t batch, double rate_scale) {
   adam_.step(batch, rate_scale, [](float*) {});
+  order_by_input();
+}
+
+void SnergNetwork::load(std::string_view& bytes) {
+  adam_.load(bytes);
+  order_by_input();
 }
 
 SnergDecoder SnergNetwork::decoder() const {

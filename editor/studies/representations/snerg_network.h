@@ -35,11 +35,14 @@ class SnergNetwork {
 
   /// See CellAdam.
   void save(std::string& bytes) const { adam_.save(bytes); }
-  void load(std::string_view& bytes) { adam_.load(bytes); }
+  void load(std::string_view& bytes);
 
  private:
   // One cell whose channels are all parameters: weights [output][input] and biases of each layer.
   CellAdam adam_;
+  std::vector<float> by_input_;  ///< the same weights as [input][output]
+
+  void order_by_input();
 };
 
 }  // namespace rebake
