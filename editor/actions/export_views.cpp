@@ -13,6 +13,7 @@
 
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/camera_mark.h"
 #include "mesh_ops/formats/cameras/photographs.h"
 
 namespace rebake {
@@ -21,8 +22,7 @@ namespace {
 
 bool wrote(const std::filesystem::path& path) {
   const nlohmann::json root = nlohmann::json::parse(read_file(path), nullptr, false);
-  return root.is_object() && root.value("software", nlohmann::json()) == camera_software &&
-         (root.contains("frames") || root.contains("camera_path"));
+  return has_camera_mark(root) && (root.contains("frames") || root.contains("camera_path"));
 }
 
 // Cameras in a file are poses that nobody may be able to make again: only files that this action wrote are replaced.
@@ -38,7 +38,7 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
   const bool own = std::filesystem::is_regular_file(path, error) && wrote(path);
   if (there == nullptr) {
     // Only files that end in .json are recognised.
-    if (!own) refuse("exists and is not a camera file of Rebake");
+    if (!own) refuse("exists and is not a camera file of Rebake, or was changed since");
     return;
   }
   if (there->write == nullptr) refuse(fmt::format("has cameras in the format {}, which is not written", there->name));
@@ -49,7 +49,7 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
   const bool same = std::all_of(cameras.begin(), cameras.end(), [&](const PhotoCamera& camera) {
     return std::find(names.begin(), names.end(), std::filesystem::path(camera.name).stem().string()) != names.end();
   });
-  if (!own) refuse("has cameras that Rebake did not write");
+  if (!own) refuse("has cameras that Rebake did not write, or that were changed since");
   if (!same && !capture_files(path, cameras).empty()) refuse("has the cameras of photographs beside it");
 }
 

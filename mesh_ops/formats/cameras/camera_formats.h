@@ -30,9 +30,6 @@ struct CameraFormat {
   std::string (*write)(const std::vector<PhotoCamera>& cameras);
 };
 
-/// Value of the field "software" in JSON files with cameras that Rebake wrote.
-inline constexpr const char* camera_software = "Rebake";
-
 std::span<const CameraFormat> camera_formats();
 /// The format that reads this path; null if none.
 const CameraFormat* camera_format_at(const std::filesystem::path& path);

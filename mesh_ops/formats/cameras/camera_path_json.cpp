@@ -5,9 +5,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/camera_mark.h"
 #include "mesh_ops/formats/cameras/json_file.h"
 
 namespace rebake {
@@ -114,8 +116,7 @@ std::optional<double> nerfstudio_path_rate(const std::filesystem::path& file) {
 
 std::string nerfstudio_path_text(const std::vector<PhotoCamera>& cameras) {
   constexpr double frames_per_second = 24;
-  json file = {{"software", camera_software},
-               {"camera_type", "perspective"},
+  json file = {{"camera_type", "perspective"},
                {"render_height", cameras.empty() ? 0 : cameras.front().height},
                {"render_width", cameras.empty() ? 0 : cameras.front().width},
                {"fps", frames_per_second},
@@ -135,7 +136,7 @@ std::string nerfstudio_path_text(const std::vector<PhotoCamera>& cameras) {
                                    {"fov", 2 * std::atan(camera.height / (2 * camera.focal.y())) / radians_per_degree},
                                    {"aspect", static_cast<double>(camera.width) / camera.height}});
   }
-  return file.dump(1) + "\n";
+  return marked_camera_text(std::move(file));
 }
 
 std::vector<PhotoCamera> read_ngp_path(const std::filesystem::path& file, std::vector<std::string>& notes) {

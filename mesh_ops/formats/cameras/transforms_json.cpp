@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
+#include "mesh_ops/formats/cameras/camera_mark.h"
 #include "mesh_ops/formats/cameras/json_file.h"
 #include "mesh_ops/formats/cameras/photographs.h"
 #include "mesh_ops/formats/images/picture_codecs.h"
@@ -189,7 +191,7 @@ std::vector<PhotoCamera> read_transforms(const fs::path& file, std::vector<std::
 }
 
 std::string transforms_text(const std::vector<PhotoCamera>& cameras) {
-  json file = {{"software", camera_software}};
+  json file = json::object();
   const bool common = std::all_of(cameras.begin(), cameras.end(),
                                   [&](const PhotoCamera& one) { return same_intrinsics(one, cameras.front()); });
   if (common && !cameras.empty()) write_intrinsics(cameras.front(), file);
@@ -201,7 +203,7 @@ std::string transforms_text(const std::vector<PhotoCamera>& cameras) {
     if (!camera.mask.empty()) frame["mask_path"] = camera.mask.string();
     file["frames"].push_back(std::move(frame));
   }
-  return file.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+  return marked_camera_text(std::move(file));
 }
 
 }  // namespace rebake

@@ -190,6 +190,12 @@ TEST_F(Guards, CameraFilesOfOthersAreKept) {
                                   "\n"),
             0)
       << log();
+  // Until someone changes them.
+  std::string changed = read_file(path("own.json"));
+  changed.replace(changed.find("fl_x"), 4, "FL_X");
+  write("own.json", changed);
+  EXPECT_EQ(export_to("own.json", ""), 1) << log();
+  EXPECT_EQ(read_file(path("own.json")), changed);
 }
 
 TEST_F(Guards, RenderedPhotographsAreNotReplacedButOwnPicturesAre) {
@@ -545,13 +551,20 @@ TEST_F(Guards, RejectsOutputsOverInputs) {
 
 // A file that a later line expects with a known content is not that of an earlier line.
 TEST_F(Guards, FilesOfKnownContentAreNotReplacedBeforeTheyAreRead) {
-  write("views.json", R"({"camera_angle_x": 0.7, "frames": [{"file_path": "v.png",
-            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}], "software": "Rebake"})");
+  const std::string view = import_line() +
+                           R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}})"
+                           "\n";
+  const std::string to_views =
+      fmt::format("{{\"op\": \"export_views\", \"out\": \"{0}\"}}\n", path("views.json").string());
+  write("s.jsonl", view + to_views);
+  EXPECT_EQ(program("run {}/s.jsonl"), 0) << log();
   const std::string before = read_file(path("views.json"));
   write("s.jsonl",
-        import_line() + R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 5], "target": [0, 0, 0]}})" + "\n" +
-            fmt::format("{{\"op\": \"export_views\", \"out\": \"{0}\"}}\n"
-                        "{{\"op\": \"import_views\", \"path\": \"{0}\", \"content\": \"0123456789abcdef\"}}\n",
+        view +
+            R"({"op": "view", "name": "v", "camera": {"eye": [0, 0, 6], "target": [0, 0, 0]}})"
+            "\n" +
+            to_views +
+            fmt::format("{{\"op\": \"import_views\", \"path\": \"{0}\", \"content\": \"0123456789abcdef\"}}\n",
                         path("views.json").string()));
   EXPECT_EQ(program("run {}/s.jsonl"), 1);
   EXPECT_EQ(read_file(path("views.json")), before);
