@@ -61,7 +61,11 @@ SceneChange change_between(const Scene& before, const Scene& after) {
     change.selected_before += selected_of(old);
     if (old.object) change.triangles_before += old.object->triangle_count();
     if (!node) continue;
-    if (old.object && node->object) change.moved += moved_between(*old.object, *node->object);
+    if (old.object && node->object)
+      if (const std::size_t moved = moved_between(*old.object, *node->object); moved > 0) {
+        change.moved += moved;
+        change.with_moved.push_back(node->name);
+      }
     change.selected_after += selected_of(*node);
     if (selected_of(*node) > 0) change.with_selected.push_back(node->name);
     if (node->object) change.triangles_after += node->object->triangle_count();

@@ -63,8 +63,8 @@ std::size_t moved_points(const CageDeform& edit, const CageDeform* replaced) {
 
 std::string change_title(const CageDeform& edit, const SceneChange& change, const CageDeform* replaced) {
   const std::size_t moved = moved_points(edit, replaced);
-  if (moved == 0 || change.names.empty()) return "";
-  return fmt::format("Moved {} cage point{} of {}", moved, moved == 1 ? "" : "s", listed(change.names));
+  if (moved == 0 || change.moved == 0) return "";
+  return fmt::format("Moved {} cage point{} of {}", moved, moved == 1 ? "" : "s", listed(change.with_moved));
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -111,23 +111,28 @@ Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, 
   for (std::size_t k = 0; k < set.nodes.size(); ++k) {
     DeformedObject made =
         deformed(*set.nodes[k].node->object, set.nodes[k].to_world, set.flags[k], falloff, deformation);
-    report.lines.push_back(in_words(set.nodes[k].node->name, made.report));
-    for (const std::string& note : notes) report.lines.back() += "; " + note;
+    const bool changed = made.report.changed > 0;
+    if (changed || made.report.outside > 0 || made.report.not_finite > 0)
+      report.lines.push_back(in_words(set.nodes[k].node->name, made.report));
     if (made.report.opaque_outside > 0)
       throw EditError(fmt::format(
           "{} of the {} vertices of \"{}\" are outside the cage, where these coordinates are undefined; use "
           "mean_value, or "
           "a coarser wrap or a larger cage",
           made.report.opaque_outside, made.report.points, set.nodes[k].node->name));
-    if (made.report.changed == 0) continue;
     // Renderer and files store positions as float.
     constexpr double farthest = 1e30;
     if (const Box box = transformed(made.object->bounds(), set.nodes[k].to_world);
         !box.isEmpty() && !(box.min().cwiseAbs().maxCoeff() < farthest && box.max().cwiseAbs().maxCoeff() < farthest))
       throw EditError(fmt::format("the coordinates of \"{}\" would be too large", set.nodes[k].node->name));
-    result = with_changed(result, set.nodes[k].node->id, [&](Node& node) { node.object = std::move(made.object); });
+    result = with_changed(result, set.nodes[k].node->id, [&](Node& node) {
+      if (changed) node.object = std::move(made.object);
+    });
     check_subtree(result, set.nodes[k].node->id);
   }
+  if (report.lines.empty()) report.lines.emplace_back("nothing moved");
+  for (const std::string& note : notes)
+    for (std::string& line : report.lines) line += "; " + note;
   return {std::move(result), std::move(report)};
 }
 

@@ -57,9 +57,9 @@ std::string title_of(const std::vector<Edit>& group, const Scene& before, const 
   if (std::string said = first.type().change_title(first.value(), change, revised); !said.empty()) return said;
   const std::string done = first.type().done(first.value());
   if (first.type().deforms) {
-    if (change.names.empty()) return done + " 0 triangles";
-    const std::string part = is_part(first) && change.moved > 0 ? triangles_text(change.moved) + " of " : "";
-    return done + " " + part + listed(change.names);
+    if (change.moved == 0) return done + " 0 triangles";
+    const std::string part = is_part(first) ? triangles_text(change.moved) + " of " : "";
+    return done + " " + part + listed(change.with_moved);
   }
   if (first.type().makes_nodes) {
     const std::string of = listed(named(group, before, after));

@@ -40,7 +40,7 @@ TEST_F(Titles, CountTrianglesThatDeformationsMoved) {
   EXPECT_LT(std::stoul(part.substr(std::string("Bent by 20°: ").size())), selected) << part;
 }
 
-// The part of a below `from` stays, and b, which lies higher, is twisted.
+// All of a lies below `from`, and b above.
 TEST_F(Titles, NameOnlyObjectsThatALimitedDeformationMoves) {
   act(document_, R"({"op": "transform", "node": "b", "translate": [0, 10, 0]})");
   act(document_, R"({"op": "select", "all": true})");
