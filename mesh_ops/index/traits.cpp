@@ -115,8 +115,8 @@ void decode_colors(const Decoder& decoder, TexelTraits* looks, Eigen::Index coun
   set_colors(mean, looks);
 }
 
-// Normal times twice the area. Zero if it is not larger than the rounding of the corners: the normals of such triangles
-// would be random.
+// Normal times twice the area. Zero if it is not larger than the rounding of the corners as doubles: the normals of
+// such triangles would be random.
 Vec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, cross = ab.cross(ac);
   const double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), c.cwiseAbs().maxCoeff()});
@@ -168,7 +168,7 @@ std::vector<TriangleTraits> triangle_traits(const BakedObject& object,
       one.features = look.features;
       one.color = look.color;
       one.opacity = look.opacity;
-      one.area = cross.norm() / 2;
+      one.area = cross.stableNorm() / 2;
       const Vec3 normal = cross.stableNormalized();
       for (int k = 0; k < 3; ++k) one.normal[static_cast<std::size_t>(k)] = static_cast<float>(normal[k]);
     });

@@ -156,6 +156,23 @@ TEST(SelectionProperty, ATriangleIsLikeItself) {
   }
 }
 
+std::array<float, 3> normal_of(const std::vector<Vec3>& corners) {
+  BakedObject object =
+      triangle_with({Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, std::vector<bool>(texture_side * texture_side, true));
+  object.sets[0].soup = Soup(corners, object.sets[0].soup.uvs(), object.sets[0].soup.faces());
+  return (*traits_of(object))[0].normal;
+}
+
+TEST(SelectionProperty, ThinTrianglesFarFromTheOriginHaveAnOrientation) {
+  // 2^20 away, where doubles are 2^-32 apart.
+  const double away = std::ldexp(1, 20);
+  for (const double height : {1.0, 1e-3, 1e-7})
+    EXPECT_EQ(normal_of({Vec3(away, away, away), Vec3(away + 1, away, away), Vec3(away, away + height, away)}),
+              (std::array<float, 3>{0, 0, 1}))
+        << height;
+  EXPECT_EQ(normal_of({Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(1, 1 + 1e-13, 0)}), (std::array<float, 3>{0, 0, 1}));
+}
+
 // Corners on one line, of which rounding makes triangles with random normals, also after transforms.
 TEST(SelectionProperty, CollinearCornersHaveNoOrientation) {
   std::mt19937 random(10);
@@ -163,15 +180,13 @@ TEST(SelectionProperty, CollinearCornersHaveNoOrientation) {
   std::uniform_real_distribution<double> exponent(-8, 8);
   const auto vector = [&] { return Vec3(normal(random), normal(random), normal(random)); };
   for (int round = 0; round < 2000; ++round) {
-    BakedObject object =
-        triangle_with({Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}, std::vector<bool>(texture_side * texture_side, true));
     const Vec3 start = vector() * std::pow(10, exponent(random)), along = vector() * std::pow(10, exponent(random));
     Affine motion = Affine::Identity();
     motion.linear() << vector(), vector(), vector();
     motion.translation() = vector();
-    object.sets[0].soup = Soup({motion * start, motion * Vec3(start + along), motion * Vec3(start + 2.7 * along)},
-                               object.sets[0].soup.uvs(), object.sets[0].soup.faces());
-    EXPECT_TRUE(((*traits_of(object))[0].normal == std::array<float, 3>{})) << round;
+    EXPECT_EQ(normal_of({motion * start, motion * Vec3(start + along), motion * Vec3(start + 2.7 * along)}),
+              (std::array<float, 3>{}))
+        << round;
   }
 }
 
