@@ -39,8 +39,8 @@ std::string extension_of(const std::filesystem::path& path) {
 }
 
 // The first bytes of a file; fewer if it is shorter.
-std::string beginning_of(const std::filesystem::path& path, std::size_t count = 64) {
-  std::string bytes(count, '\0');
+std::string beginning_of(const std::filesystem::path& path) {
+  std::string bytes(64, '\0');
   std::ifstream file(path, std::ios::binary);
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   bytes.resize(static_cast<std::size_t>(file.gcount()));

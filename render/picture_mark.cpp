@@ -2,10 +2,10 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -23,10 +23,10 @@ constexpr auto png_signature = "\x89PNG"sv, jpeg_start = "\xff\xd8"sv, openexr_s
 constexpr std::size_t checksum_size = 4;
 constexpr std::size_t header_size = 1 << 16;  // of files; attributes of OpenEXR may be long
 
-// Where the digits of the hash are in a file.
+// Offset of the hash's digits, and whether a checksum of their chunk follows them.
 struct Place {
   std::size_t digits;
-  bool checksum;  // whether one follows, which depends on them
+  bool checksum;
 };
 
 // The text chunk that names the program (PNG, section 11.3.4.3), after the signature and the chunk IHDR.
@@ -56,7 +56,7 @@ std::optional<Place> place_in(std::string_view bytes) {
   const auto after = [&](std::size_t at, std::string_view text, bool checksum) -> std::optional<Place> {
     if (at > bytes.size()) return std::nullopt;
     const std::string_view rest = bytes.substr(at);
-    if (rest.size() < text.size() + name.size() + blank.size()) return std::nullopt;
+    if (rest.size() < text.size() + name.size() + blank.size() + (checksum ? checksum_size : 0)) return std::nullopt;
     if (!rest.starts_with(text) || rest.substr(text.size(), name.size()) != name) return std::nullopt;
     return Place{at + text.size() + name.size(), checksum};
   };
@@ -129,14 +129,21 @@ std::string with_mark(const std::string& bytes, int width, int height, bool has_
 }
 
 bool has_mark(const std::filesystem::path& file) {
-  std::string bytes(header_size, '\0');
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (error || !std::filesystem::is_regular_file(file, error)) return false;
   std::ifstream input(file, std::ios::binary);
-  input.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(input.gcount()));
+  std::string bytes;
+  const auto read_up_to = [&](std::uintmax_t count) {
+    const std::size_t before = bytes.size();
+    bytes.resize(static_cast<std::size_t>(count));
+    return static_cast<bool>(input.read(bytes.data() + before, static_cast<std::streamsize>(bytes.size() - before)));
+  };
   // Photographs may be large: the rest is read only if the mark can be in it.
-  if (!bytes.starts_with("RIFF"sv) && !place_in(bytes)) return false;
-  input.clear();
-  bytes.append(std::istreambuf_iterator<char>(input), {});
+  if (!read_up_to(std::min<std::uintmax_t>(size, header_size))) return false;
+  const bool webp = bytes.starts_with("RIFF"sv) && bytes.substr(0, 12).ends_with("WEBP"sv);
+  if (!webp && !place_in(bytes)) return false;
+  if (!read_up_to(size)) return false;
   const std::optional<Place> place = place_in(bytes);
   return place && sealed(bytes, *place) == bytes;
 }

@@ -6,13 +6,11 @@
 
 namespace rebake {
 
-/// Files that Rebake made carry its name and a hash of their other bytes, so that those which someone changed
-/// afterwards are known as theirs.
-
-/// The attribute of an OpenEXR file that write_mark() completes: name, text.
+/// The attribute of an OpenEXR file that with_mark() completes: name, text.
 extern const std::pair<std::string, std::string> openexr_mark;
 
-/// Adds the mark to the bytes of a PNG, JPEG or WebP file, and completes that of an OpenEXR file. `width`, `height`,
+/// Adds the mark to the bytes of a PNG, JPEG or WebP file, and completes it in an OpenEXR file. The mark names Rebake,
+/// and holds a hash of all other bytes, so that it becomes wrong if someone changes the picture. `width`, `height`,
 /// `has_alpha`: of the picture.
 std::string with_mark(const std::string& bytes, int width, int height, bool has_alpha);
 

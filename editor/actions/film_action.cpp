@@ -159,7 +159,9 @@ class Film {
     std::error_code error;
     if (!fs::exists(action_.out, error) || fs::file_size(action_.out, error) == 0) return;
     if (!is_marked_video(read_file(action_.out)))
-      throw FileError(action_.out, "exists and is not a video of Rebake, so it is not replaced; choose another name");
+      throw FileError(
+          action_.out,
+          "exists and is not a video of Rebake, or was changed since, so it is not replaced; choose another name");
   }
 
   void draw(const FilmFrame& frame, const fs::path& file) {
@@ -189,7 +191,7 @@ class Film {
       throw Error(fmt::format("ffmpeg failed with exit status {}; no video was written. Its pictures are in {}",
                               *status, pictures.string()));
     check_replaces_video();  // once more: it may have appeared since
-    write_file_atomically(action_.out, with_mark(read_file(partial.file), action_.out), sources_);
+    write_file_atomically(action_.out, with_video_mark(read_file(partial.file), action_.out), sources_);
   }
 
   Session& session_;

@@ -101,8 +101,8 @@ void refuse_foreign(const std::vector<fs::path>& pictures) {
   for (const fs::path& picture : pictures)
     if (std::error_code error; fs::file_size(picture, error) > 0 && !is_rendered_picture(picture))
       throw FileError(picture,
-                      "was not rendered by Rebake, or was changed or damaged since, so it is no picture of this film; "
-                      "move it elsewhere");
+                      "was not rendered by Rebake, was changed or damaged since, or is of an earlier build; move the "
+                      "folder's pictures elsewhere, or choose another folder");
 }
 
 }  // namespace
@@ -218,7 +218,7 @@ bool PictureFolder::has(std::size_t number) const {
     read_image(picture(number));
     return true;
   } catch (const FileError&) {
-    return false;  // damaged: it is rendered again
+    return false;  // empty: it is rendered again
   }
 }
 

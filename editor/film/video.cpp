@@ -12,15 +12,18 @@ namespace rebake {
 
 namespace {
 
-// Adds a size to that of the segment of a WebM file, if it is known (RFC 8794, section 6.2), so that what follows is
-// part of it.
+// Adds a size to that of the segment of a WebM file, if it is known (RFC 8794, section 6.2), so that the mark is part
+// of it.
 void lengthen_segment(std::string& webm, std::size_t more) {
   constexpr std::string_view segment = "\x18\x53\x80\x67\x01";  // followed by a size of seven bytes
   const std::size_t at = webm.find(segment);
   if (at == std::string::npos || webm.size() < at + segment.size() + 7) return;
-  std::uint64_t size = more;
+  std::uint64_t size = 0;
   for (std::size_t k = 0; k < 7; ++k)
     size += std::uint64_t{static_cast<unsigned char>(webm[at + segment.size() + 6 - k])} << 8 * k;
+  constexpr std::uint64_t unknown = (std::uint64_t{1} << 56) - 1;
+  if (size == unknown) return;
+  size += more;
   for (std::size_t k = 0; k < 7; ++k) webm[at + segment.size() + 6 - k] = static_cast<char>(size >> 8 * k & 255U);
 }
 
@@ -66,14 +69,17 @@ std::vector<std::string> encoder_command(const Video& video) {
   return command;
 }
 
-std::string with_mark(std::string video, const std::filesystem::path& out) {
+std::string with_video_mark(std::string video, const std::filesystem::path& out) {
   const std::size_t size = mark_text("").size();
   std::string head = std::string(3, '\0') + static_cast<char>(8 + size) + "free";
   if (out.extension() == ".webm") {
     head = std::string("\xec") + static_cast<char>(0x80 | size);
     lengthen_segment(video, head.size() + size);
   }
-  return video + head + mark_text(video);
+  const std::string text = mark_text(video);
+  video += head;
+  video += text;
+  return video;
 }
 
 bool is_marked_video(std::string_view bytes) {

@@ -20,8 +20,8 @@ struct Video {
 /// The bytes of an encoded video with an ending that names Rebake and holds a hash of them, and that players skip: a
 /// box `free` (ISO/IEC 14496-12, section 8.1.2) or an element Void (RFC 8794, section 11.3.1). Programs that cut or
 /// convert videos drop it. `out`: by whose extension the container is known.
-std::string with_mark(std::string video, const std::filesystem::path& out);
-/// Whether these are the bytes that with_mark() gave.
+std::string with_video_mark(std::string video, const std::filesystem::path& out);
+/// Whether these are the bytes that with_video_mark() gave.
 bool is_marked_video(std::string_view bytes);
 
 /// Whether a path names a video that can be written: .mp4 or .webm.

@@ -513,7 +513,7 @@ class Document:
         mode: how to combine the result with the present selection
         """
     def select_folded(self, *, node: Node | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
-        """Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a vertex).
+        """Selects triangles that the last deformation that moved their object folded or collapsed (det J ≤ 0 at a vertex).
 
         node: only this node and its children; default: all visible, unlocked objects
         mode: how to combine the result with the present selection

@@ -39,7 +39,7 @@ bool is_own(const fs::directory_entry& entry) {
   if (!entry.is_regular_file(error) || entry.file_size(error) == 0) return true;
   // A killed run leaves the part that it has written.
   if (std::none_of(std::begin(own), std::end(own), [&](const char* one) { return name == one; })) return true;
-  if (name == preview_name) return is_rendered_picture(entry.path());
+  if (name == preview_name) return is_picture_file(entry.path());
   if (name == table_name) return read_file(entry.path()).starts_with(table_header);
   return name == checkpoint_name && is_checkpoint(entry.path());
 }

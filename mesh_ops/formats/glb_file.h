@@ -41,7 +41,7 @@ class GlbFile {
   /// The bytes of the file; after finish().
   std::string bytes() const;
 
-  /// Whether these bytes are a file that bytes() made.
+  /// Whether these are the bytes of a file that names Rebake as its generator.
   static bool is_own(const std::string& bytes);
 
  private:
