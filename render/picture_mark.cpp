@@ -39,6 +39,9 @@ static_assert(jpeg_comment[3] == name.size() + blank.size() + 2);
 constexpr auto openexr_attribute = "oftware\0string\0\x17\0\0\0"sv;
 static_assert(openexr_attribute[15] == name.size() + blank.size());
 
+// A comment after the root element (XML 1.0, section 2.1).
+constexpr auto svg_start = "<?xml"sv, svg_comment = "<!-- "sv, svg_end = " -->\n"sv;
+
 template <int bytes>
 std::string little_endian(std::size_t value) {
   std::string text;
@@ -64,6 +67,11 @@ std::optional<Place> place_in(std::string_view bytes) {
   if (bytes.starts_with(jpeg_start)) return after(jpeg_start.size(), jpeg_comment, false);
   if (bytes.starts_with(openexr_signature)) {
     return after(bytes.substr(0, header_size).find(openexr_attribute), openexr_attribute, false);
+  }
+  if (bytes.starts_with(svg_start)) {
+    constexpr std::size_t size = svg_comment.size() + name.size() + blank.size() + svg_end.size();
+    if (bytes.size() < size || !bytes.ends_with(svg_end)) return std::nullopt;
+    return after(bytes.size() - size, svg_comment, false);
   }
   constexpr std::size_t end = name.size() + blank.size() + 1;
   if (bytes.starts_with("RIFF"sv) && bytes.size() > end) return after(bytes.size() - end, ""sv, false);
@@ -96,6 +104,10 @@ std::string with_comment(const std::string& jpeg) {
          jpeg.substr(jpeg_start.size());
 }
 
+std::string with_xml_comment(const std::string& svg) {
+  return svg + std::string(svg_comment) + std::string(name) + std::string(blank) + std::string(svg_end);
+}
+
 // With metadata (WebP container specification, sections "Extended File Format" and "Metadata"; Exif 2.32, section 4.6).
 std::string with_exif(const std::string& webp, int width, int height, bool has_alpha) {
   const auto chunk = [](const std::string& kind, const std::string& bytes) {
@@ -123,10 +135,13 @@ std::string with_mark(const std::string& bytes, int width, int height, bool has_
   std::string marked = bytes.starts_with(png_signature) ? with_text_chunk(bytes)
                        : bytes.starts_with(jpeg_start)  ? with_comment(bytes)
                        : bytes.starts_with("RIFF"sv)    ? with_exif(bytes, width, height, has_alpha)
+                       : bytes.starts_with(svg_start)   ? with_xml_comment(bytes)
                                                         : bytes;
   const std::optional<Place> place = place_in(marked);
   return place ? sealed(std::move(marked), *place) : marked;
 }
+
+std::string with_mark(const std::string& png_or_svg) { return with_mark(png_or_svg, 0, 0, false); }
 
 bool has_mark(const std::filesystem::path& file) {
   std::error_code error;
@@ -141,8 +156,9 @@ bool has_mark(const std::filesystem::path& file) {
   };
   // Photographs may be large: the rest is read only if the mark can be in it.
   if (!read_up_to(std::min<std::uintmax_t>(size, header_size))) return false;
-  const bool webp = bytes.starts_with("RIFF"sv) && bytes.substr(0, 12).ends_with("WEBP"sv);
-  if (!webp && !place_in(bytes)) return false;
+  const bool at_end =
+      bytes.starts_with(svg_start) || (bytes.starts_with("RIFF"sv) && bytes.substr(0, 12).ends_with("WEBP"sv));
+  if (!at_end && !place_in(bytes)) return false;
   if (!read_up_to(size)) return false;
   const std::optional<Place> place = place_in(bytes);
   return place && sealed(bytes, *place) == bytes;

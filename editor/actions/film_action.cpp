@@ -102,7 +102,7 @@ class Film {
     if (video_) {
       sources_.check_file(action_.out);
       refuse_replacing_work(action_.out);
-      check_replaces_video();
+      refuse_replacing_video(action_.out);
     }
     PictureFolder folder(pictures, video_ ? ".png" : "." + action_.picture, frames_.size(), content(), video_,
                          sources_);
@@ -155,15 +155,6 @@ class Film {
                        action_.content.panorama ? ", panorama" : "", passes);
   }
 
-  void check_replaces_video() const {
-    std::error_code error;
-    if (!fs::exists(action_.out, error) || fs::file_size(action_.out, error) == 0) return;
-    if (!is_marked_video(read_file(action_.out)))
-      throw FileError(
-          action_.out,
-          "exists and is not a video of Rebake, or was changed since, so it is not replaced; choose another name");
-  }
-
   void draw(const FilmFrame& frame, const fs::path& file) {
     // Nodes without keyframes are shared, so only what moves is uploaded again.
     const Scene moved = has_keyframes(scene_) ? scene_at(scene_, frame.seconds) : scene_;
@@ -190,7 +181,7 @@ class Film {
     if (*status != 0)
       throw Error(fmt::format("ffmpeg failed with exit status {}; no video was written. Its pictures are in {}",
                               *status, pictures.string()));
-    check_replaces_video();  // once more: it may have appeared since
+    refuse_replacing_video(action_.out);  // once more: it may have appeared since
     write_file_atomically(action_.out, with_video_mark(read_file(partial.file), action_.out), sources_);
   }
 

@@ -6,6 +6,7 @@
 
 #include "mesh_ops/base/child_process.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 
 namespace rebake {
@@ -90,6 +91,14 @@ bool is_marked_video(std::string_view bytes) {
     if (bytes.substr(bytes.size() - size) == mark_text(video)) return true;
   }
   return false;
+}
+
+void refuse_replacing_video(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error) || std::filesystem::file_size(file, error) == 0) return;
+  if (!is_marked_video(read_file(file)))
+    throw FileError(
+        file, "exists and is not a video of Rebake, or was changed since, so it is not replaced; choose another name");
 }
 
 }  // namespace rebake

@@ -23,6 +23,8 @@ struct Video {
 std::string with_video_mark(std::string video, const std::filesystem::path& out);
 /// Whether these are the bytes that with_video_mark() gave.
 bool is_marked_video(std::string_view bytes);
+/// Throws FileError if there is a file that is not a marked video.
+void refuse_replacing_video(const std::filesystem::path& file);
 
 /// Whether a path names a video that can be written: .mp4 or .webm.
 bool names_video(const std::filesystem::path& path);

@@ -144,8 +144,8 @@ void study_distance(const StudyInput& input, const std::filesystem::path& own, S
     }
   }
   for (const auto& of_choice : rows) table.rows.insert(table.rows.end(), of_choice.begin(), of_choice.end());
-  write_picture(contact_sheet(shown, static_cast<int>(shown.size()), 4, {255, 255, 255}), own / "close-up-pictures.png",
-                {});
+  write_study_picture(contact_sheet(shown, static_cast<int>(shown.size()), 4, {255, 255, 255}),
+                      own / "close-up-pictures.png");
   write_plot(input, "error in close-ups of the kettle", "share of the usual distance", lines, own / "close-up");
 }
 
@@ -221,7 +221,7 @@ void study_opacity(const StudyInput& input, const std::filesystem::path& own, St
          {frame_milliseconds(input, choice.scene, square_view(camera, choice.samples)), psnr, none, none},
          ""});
   }
-  write_picture(contact_sheet(pictures, 3, 4, {255, 255, 255}), own / "opacity.png", {});
+  write_study_picture(contact_sheet(pictures, 3, 4, {255, 255, 255}), own / "opacity.png");
 }
 
 // Angle between a pixel's view ray and the surface's normal in degrees; −1 where nothing is.

@@ -15,6 +15,8 @@
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "render/compare.h"
+#include "render/image.h"
+#include "render/picture_mark.h"
 
 namespace rebake {
 
@@ -163,6 +165,20 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
 
 }  // namespace
 
+namespace {
+
+void refuse_foreign_picture(const std::filesystem::path& file) {
+  if (std::error_code error; std::filesystem::exists(file, error) && !is_rendered_picture(file))
+    throw FileError(file, "was not made by a study, was changed since, or is of an earlier build; move it elsewhere");
+}
+
+}  // namespace
+
+void write_study_picture(const Image& picture, const std::filesystem::path& file) {
+  refuse_foreign_picture(file);
+  write_picture(picture, file, {});
+}
+
 void write_line_plot(const std::string& title, const std::string& x, const std::string& y, bool log_y,
                      const std::vector<PlottedLine>& lines, const std::string& base) {
   std::string data, drawn;
@@ -183,11 +199,13 @@ void write_line_plot(const std::string& title, const std::string& x, const std::
   const std::size_t height = plot_height + 20 * ((lines.size() + columns - 1) / columns);
   for (const auto& [terminal, extension] :
        {std::pair{fmt::format("svg size {},{} dynamic background rgb 'white'", width, height), "svg"},
-        std::pair{fmt::format("pngcairo size {},{}", width, height), "png"}})
+        std::pair{fmt::format("pngcairo size {},{}", width, height), "png"}}) {
+    refuse_foreign_picture(base + "." + extension);
     write_file_atomically(base + "." + extension,
-                          run_gnuplot(fmt::format("{}set key below maxcols {}\nset terminal {}\nplot {}\n", plot,
-                                                  columns, terminal, drawn)),
+                          with_mark(run_gnuplot(fmt::format("{}set key below maxcols {}\nset terminal {}\nplot {}\n",
+                                                            plot, columns, terminal, drawn))),
                           {});
+  }
 }
 
 std::filesystem::path own_folder(const StudyInput& input, const std::string& study) {
@@ -204,6 +222,9 @@ std::filesystem::path own_folder(const StudyInput& input, const std::string& stu
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
     if (entry.is_symlink(error))
       throw FileError(entry.path(), "is a symbolic link; remove it, since the study would overwrite its target");
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (const auto extension = entry.path().extension(); extension == ".png" || extension == ".svg")
+      refuse_foreign_picture(entry.path());
   write_file_atomically(marker, contents, {});
   return folder;
 }

@@ -237,6 +237,24 @@ class FileTest(WindowCase):
         editor.settle()
         self.assertEqual(project.read_text(), changed)
 
+    def test_videos_of_others_are_not_replaced(self):
+        self.program("ffmpeg", "for last; do :; done\nprintf 'a video' > \"$last\"\n")
+        editor = self.open(FICUS)
+        editor.until_ops("import")
+        own = self.folder / "own.mp4"
+        editor.command("turntable")
+        editor.answer(str(own))
+        until(lambda: own.is_file() and own.read_bytes().startswith(b"a video"), "the video")
+        mine = self.folder / "mine.mp4"
+        mine.write_bytes(own.read_bytes() + b" with music")
+        before = mine.read_bytes()
+        editor.command("turntable")
+        editor.answer(str(mine))
+        editor.key("Return")  # also confirms replacing it
+        editor.settle()
+        self.assertTrue(editor.state()["asks"], "refused")
+        self.assertEqual(mine.read_bytes(), before)
+
     def test_folders_of_other_tools_have_import_options(self):
         editor = self.open()
         editor.key("ctrl+o")

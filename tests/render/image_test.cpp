@@ -12,6 +12,7 @@
 #include "mesh_ops/formats/images/png_writer.h"
 #include "mesh_ops/scene/scene_light.h"
 #include "render/compare.h"
+#include "render/picture_mark.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {
@@ -88,6 +89,21 @@ TEST(Image, DoesNotRecogniseWhatSomeoneChanged) {
     }
     write_text(path, bytes);
     EXPECT_TRUE(is_rendered_picture(path)) << extension;
+  }
+}
+
+TEST(Image, PlotsGetTheMarkToo) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "plot.svg";
+  const std::string plot = "<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\"/>\n";
+  write_text(path, plot);
+  EXPECT_FALSE(is_rendered_picture(path));
+  const std::string marked = with_mark(plot + std::string(100'000, '\n'));
+  write_text(path, marked);
+  EXPECT_TRUE(is_rendered_picture(path));
+  for (const std::string& changed : {marked + "\n", "<?xml?>" + marked, marked.substr(0, marked.size() - 1)}) {
+    write_text(path, changed);
+    EXPECT_FALSE(is_rendered_picture(path));
   }
 }
 

@@ -46,6 +46,7 @@ CameraAnimation::CameraAnimation(fs::path out, int width, int height, std::vecto
   } else {
     sources.check_file(out_);
     refuse_replacing_work(out_);
+    refuse_replacing_video(out_);
     check_can_encode(out_, false);
     pictures_ = cache_folder() / fmt::format("film-{}", ::getpid());
     std::error_code nothing;
@@ -83,7 +84,8 @@ std::string CameraAnimation::run_step(const std::function<void(const Camera&, co
   const std::optional<int> status = encoder_->ended();
   if (!status) return "";
   if (*status != 0) throw Error(fmt::format("ffmpeg failed with exit status {}; no video was written", *status));
-  write_file_atomically(out_, read_file(partial), sources);
+  refuse_replacing_video(out_);  // once more: it may have appeared since
+  write_file_atomically(out_, with_video_mark(read_file(partial), out_), sources);
   return fmt::format("Wrote {} seconds of video to {}", static_cast<double>(cameras_.size()) / rate, out_.string());
 }
 

@@ -96,7 +96,7 @@ void write_pictures(const StudyInput& input, const TracedFrames& traced, const s
       View view{framing_camera(scene, 1), 420, 420, 4};
       pictures.push_back(input.renderer().render(scene, view, {}));
     }
-    write_picture(contact_sheet(pictures, 4, 6, {255, 255, 255}), file, {});
+    write_study_picture(contact_sheet(pictures, 4, 6, {255, 255, 255}), file);
   } catch (const DeviceError& error) {
     input.say(fmt::format("warning: {} was not written: {}", file.filename().string(), error.what()));
   }

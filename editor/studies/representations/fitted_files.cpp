@@ -126,10 +126,13 @@ std::string text_of(const RepresentationSizes& sizes) {
                      sizes.picture);
 }
 
-// Written over those of a worse result.
+// For files that are written over those of a worse result, which may have more of them. Other files stay.
 fs::path fresh_folder(const fs::path& folder) {
-  fs::remove_all(folder);
   fs::create_directories(folder);
+  std::vector<fs::path> old;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".png" && is_rendered_picture(entry.path())) old.push_back(entry.path());
+  for (const fs::path& picture : old) fs::remove(picture);
   return folder;
 }
 void write_best(const FittedFiles& fitted, const SnergScene& best) {

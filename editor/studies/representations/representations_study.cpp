@@ -113,7 +113,7 @@ void write_crops(const std::vector<Image>& pictures, const fs::path& file) {
   constexpr int times = 4;
   std::vector<Image> cells = pictures;
   for (const Image& picture : pictures) cells.push_back(enlarged_middle(picture, picture.width / times, times));
-  write_picture(contact_sheet(cells, static_cast<int>(pictures.size()), 4, {255, 255, 255}), file, {});
+  write_study_picture(contact_sheet(cells, static_cast<int>(pictures.size()), 4, {255, 255, 255}), file);
 }
 
 class Run {
@@ -249,7 +249,7 @@ StudyTable study_representations(const StudyInput& input) {
     const SnergScene scene = read_snerg(options.snerg);
     drawer.volume(scene, input.view, [&](const Drawn& drawn) {
       run.given("SNeRG of " + options.snerg, megabytes_in(options.snerg), input.view, drawn);
-      write_picture(drawn.picture(input.view), own / "given-snerg.png", {});
+      write_study_picture(drawn.picture(input.view), own / "given-snerg.png");
     });
   }
   if (!options.plenoctree.empty()) {
@@ -257,7 +257,7 @@ StudyTable study_representations(const StudyInput& input) {
     drawer.volume(tree, input.view, [&](const Drawn& drawn) {
       run.given("PlenOctree of " + options.plenoctree,
                 static_cast<double>(fs::file_size(options.plenoctree)) / megabyte, input.view, drawn);
-      write_picture(drawn.picture(input.view), own / "given-plenoctree.png", {});
+      write_study_picture(drawn.picture(input.view), own / "given-plenoctree.png");
     });
   }
   for (const std::string& sample : sizes.samples) run.sample(sample, own);

@@ -77,6 +77,23 @@ TEST_F(StudyFiles, PlotsOfOthersAreKeptAfterARunWithoutPlots) {
   EXPECT_EQ(read_file(at("textures.png")), "mine");
 }
 
+TEST_F(StudyFiles, ChangedPicturesInTheStudysOwnFolderAreKept) {
+  const Scene scene;
+  const StudyInput input{{}, scene, {}, 1, {}, {}, folder.path()};
+  const std::filesystem::path picture = own_folder(input, "limits") / "opacity.png";
+  const Image grey{2, 1, std::vector<std::uint8_t>(6, 128)};
+  for (int run = 0; run < 2; ++run) {
+    EXPECT_NO_THROW(own_folder(input, "limits"));
+    write_study_picture(grey, picture);
+  }
+  for (const std::string& other : {read_file(picture) + "retouched", std::string("a photograph")}) {
+    write_text(picture, other);
+    EXPECT_THROW(own_folder(input, "limits"), FileError) << "before anything is computed";
+    EXPECT_THROW(write_study_picture(grey, picture), FileError);
+    EXPECT_EQ(read_file(picture), other);
+  }
+}
+
 TEST_F(StudyFiles, AnInputInTheStudysOwnFolderIsRefused) {
   const Scene scene;
   StudyInput input{{}, scene, {}, 1, {}, {}, folder.path()};
