@@ -22,6 +22,7 @@ namespace {
 // Files that Rebake adds to a MobileNeRF folder.
 constexpr std::array<std::string_view, 3> sidecar_names{"turns.bin", "turns.json", "baked.bin"};
 
+// Written beside a trained scene. A file of another program may have this name.
 constexpr const char* training_report = "rebake_training.json";
 
 // Removes leading digits. Returns their number.
@@ -34,7 +35,6 @@ std::size_t skip_digits(std::string_view& text) {
 }  // namespace
 
 bool is_baked_file_name(const std::string& name) {
-  if (name == training_report) return true;
   if (name == "mlp.json" || std::ranges::find(sidecar_names, name) != sidecar_names.end()) return true;
   std::string_view rest = name;
   if (!rest.starts_with("shape")) return false;
@@ -76,9 +76,13 @@ std::vector<fs::path> baked_files(const fs::path& folder) {
 }
 
 std::set<std::string> own_baked_files(const fs::path& folder) {
-  std::set<std::string> names{"mlp.json", training_report};
+  std::set<std::string> names{"mlp.json"};
   names.insert(sidecar_names.begin(), sidecar_names.end());
   std::error_code error;
+  if (fs::is_regular_file(folder / training_report, error))
+    if (const json report = json::parse(read_file(folder / training_report), nullptr, false);
+        report.is_object() && report.contains("software"))
+      names.insert(training_report);
   if (!fs::is_regular_file(folder / "mlp.json", error) || !has_baked_decoder(folder)) return names;
   names.merge(names_of_scene(folder, baked_files, is_baked_file_name));
   return names;

@@ -198,6 +198,17 @@ TEST_F(Guards, CameraFilesOfOthersAreKept) {
   EXPECT_EQ(read_file(path("own.json")), changed);
 }
 
+TEST_F(Guards, ReportsOfTrainingAreReplacedWithTheirSceneButOtherFilesOfThatNameAreNot) {
+  write("s.jsonl", import_line() + fmt::format("{{\"op\": \"export\", \"out\": \"{}\"}}\n", path("scene").string()));
+  EXPECT_EQ(program("run {}/s.jsonl"), 0) << log();
+  write("scene/rebake_training.json", "notes");
+  EXPECT_EQ(program("run {}/s.jsonl"), 1);
+  EXPECT_EQ(read_file(path("scene/rebake_training.json")), "notes");
+  write("scene/rebake_training.json", R"({"software": "Rebake"})");
+  EXPECT_EQ(program("run {}/s.jsonl"), 0) << log();
+  EXPECT_FALSE(fs::exists(path("scene/rebake_training.json"))) << "the report of another scene";
+}
+
 TEST_F(Guards, RenderedPhotographsAreNotReplacedButOwnPicturesAre) {
   fs::create_directories(path("cap/images"));
   fs::create_directories(path("edited"));
