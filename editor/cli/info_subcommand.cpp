@@ -34,7 +34,7 @@ json object_info(const PlacedNode& placed) {
   const BakedObject& object = *placed.node->object;
   json sizes = json::array();
   for (const TextureSet& set : object.sets) sizes.push_back({set.texels->width(), set.texels->height()});
-  const Box box = transformed(object.bounds(), placed.to_world);
+  const Box box = world_bounds(placed);
   return {{"name", placed.node->name},
           {"visible", placed.visible},
           {"locked", placed.locked},
@@ -65,7 +65,7 @@ json scene_info(const Scene& scene) {
     if (!placed.node->object) continue;
     const BakedObject& object = *placed.node->object;
     objects.push_back(object_info(placed));
-    box.extend(transformed(object.bounds(), placed.to_world));
+    box.extend(world_bounds(placed));
     triangles += object.triangle_count();
     vertices += object.vertex_count();
     // An object that several nodes share counts once.

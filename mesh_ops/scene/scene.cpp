@@ -155,4 +155,12 @@ Box world_bounds(const Scene& scene) {
   return result;
 }
 
+Box world_bounds(const PlacedNode& object) {
+  Box result;
+  for (const TextureSet& set : object.node->object->sets)
+    for (const Face& face : set.soup.faces())
+      for (const std::uint32_t vertex : face) result.extend(object.to_world * set.soup.positions()[vertex]);
+  return result;
+}
+
 }  // namespace rebake

@@ -81,8 +81,10 @@ inline constexpr int deepest_group = 64;
 /// Levels of nodes: 0 for an empty scene, 1 without groups.
 int depth(const Scene& scene);
 
-/// Bounding box of all visible objects in world space.
+/// Bounding box of all visible objects in world space, from the boxes of the objects: too large for rotated ones.
 Box world_bounds(const Scene& scene);
+/// Bounding box of an object's triangles in world space.
+Box world_bounds(const PlacedNode& object);
 /// Axis-aligned bounding box of a transformed box.
 Box transformed(const Box& box, const Affine& transform);
 

@@ -54,6 +54,19 @@ TEST_F(Cli, InfoAsJson) {
   for (const char* key : {"opaque_texels", "bounds", "memory"}) EXPECT_TRUE(info.contains(key)) << key;
 }
 
+TEST_F(Cli, InfoHasTheBoundsOfRotatedTriangles) {
+  write_text(in("s.jsonl"), R"({"op": "import", "path": ")" + in("ball") + R"(", "as": "ball"}
+{"op": "transform", "node": "ball", "rotate": {"axis": [1, 0, 0], "degrees": 45}}
+{"op": "save", "out": ")" + in("rotated") +
+                                R"("})");
+  ASSERT_EQ(rebake_run("run " + in("s.jsonl")).code, 0);
+  const auto info = nlohmann::json::parse(rebake_run("info " + in("rotated") + " --json").text);
+  for (const auto& bounds : {info.at("bounds"), info.at("objects").at(0).at("bounds")}) {
+    EXPECT_LT(bounds.at("max").at(2).get<double>(), 1.0001) << "of the ball of radius 1, not of its rotated box";
+    EXPECT_GT(bounds.at("max").at(2).get<double>(), 0.95);
+  }
+}
+
 TEST_F(Cli, InfoNamesFormatAndDecoder) {
   const auto said = [&](const std::string& path) { return rebake_run("info " + path).text; };
   const std::string tests = REBAKE_SOURCE "/tests/mesh_ops/formats/";
