@@ -16,6 +16,7 @@
 #include "editor/edits/nodes/transform.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/opacity.h"
+#include "mesh_ops/index/traits.h"
 #include "mesh_ops/rays/scene_rays.h"
 
 namespace rebake {
@@ -45,7 +46,7 @@ struct Body {
       for (const TextureSet& set : placed.node->object->sets) {
         const std::vector<std::uint8_t> visible = faces_with_opaque_texels(set);
         for (std::size_t f = 0; f < visible.size(); ++f) {
-          if (visible[f] == 0) continue;
+          if (visible[f] == 0 || !shows_opaque(set, f)) continue;
           std::array<Vec3, 3> corners;
           for (std::size_t k = 0; k < 3; ++k)
             corners[k] = placed.to_world * set.soup.positions()[set.soup.faces()[f][k]];

@@ -191,6 +191,40 @@ TEST_F(NodeEdits, DropsCrossedBoxesEdgeToEdge) {
   }
 }
 
+// An object of horizontal triangles at these heights; those that are not opaque have opaque texels beside them.
+std::shared_ptr<const BakedObject> layers(const std::vector<std::pair<double, bool>>& heights) {
+  auto object = std::make_shared<BakedObject>(*made_object());
+  constexpr int side = 16;
+  const auto texels = std::make_shared<const FeatureTexture>(
+      FeatureTexture::from_rows(side, side, AlphaCode::plain, [](int, Texel* row) {
+        for (int x = 0; x < side; ++x) row[x] = {{static_cast<std::uint8_t>(x < 8 ? 0 : 255), 9, 9, 9}, {9, 9, 9, 255}};
+      }));
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uvs;
+  std::vector<Face> faces;
+  for (const auto& [height, opaque] : heights) {
+    const auto first = static_cast<std::uint32_t>(positions.size());
+    const double left = opaque ? 0.55 : 0.1;
+    for (const Vec2& corner : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1)}) {
+      positions.emplace_back(4 * corner.x() - 1, height, 4 * corner.y() - 1);
+      uvs.emplace_back(left + 0.39 * corner.x(), 0.1 + 0.8 * corner.y());
+    }
+    faces.push_back({first, first + 1, first + 2});
+  }
+  object->sets = {{Soup(positions, uvs, faces), texels}};
+  return object;
+}
+
+TEST_F(NodeEdits, DropsThroughTransparentTriangles) {
+  export_scene(scene_of(layers({{0, true}, {1, false}})), folder_.path() / "floor", {});
+  export_scene(scene_of(layers({{0, true}})), folder_.path() / "body", {});
+  run(R"({"op": "import", "path": "{here}/floor"}
+{"op": "import", "path": "{here}/body"}
+{"op": "place", "node": "body", "position": [0.3, 5, 0.2], "rotation": {"axis": [0, 1, 0], "degrees": 20}}
+{"op": "drop", "node": "body"})");
+  EXPECT_NEAR(find_placed(session.scene(), node("body")->id)->to_world.translation().y(), 0, 1e-4);
+}
+
 TEST_F(NodeEdits, SetsGroundByHeightFootPointsOrSelection) {
   run(import + R"({"op": "ground", "height": -4}
 {"op": "drop", "node": "ball"})");
