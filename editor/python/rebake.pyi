@@ -498,7 +498,7 @@ class Document:
         world: axis that points up in the camera file, as for import_views
         scale: factor of the cameras' positions
         node: only this node and its children; default: all visible, unlocked objects
-        labels: values of pixels, or COCO categories, that are inside, 1 to 255; default: 128 to 255, or all categories
+        labels: values of pixels, or COCO categories, that are inside, 1 to 255; default: 128 to 255, or all categories. Where several of these categories overlap, the last annotation of the file counts
         threshold: share of the votes that a triangle needs, above 0, at most 1
         store: with labels: stores the triangles of each as the selection "NAME LABEL"
         mode: how to combine the result with the present selection
@@ -513,7 +513,7 @@ class Document:
         mode: how to combine the result with the present selection
         """
     def select_folded(self, *, node: Node | None = None, mode: Literal["set", "add", "remove", "intersect"] = "set") -> dict[str, NDArray[np.bool_]]:
-        """Selects triangles that the last deformation that moved their object folded or collapsed (det J ≤ 0 at a vertex).
+        """Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a vertex).
 
         node: only this node and its children; default: all visible, unlocked objects
         mode: how to combine the result with the present selection

@@ -90,7 +90,7 @@ class Voting {
     if (edit.labels.empty()) labels_ = {1};
     for (std::size_t k = 0; k < found.cameras.size(); ++k) {
       if (coco ? !coco->has(k) : found.masks[k].empty()) continue;
-      batch_.push_back({found.cameras[k], coco ? coco->mask(k) : read_mask(found.masks[k])});
+      batch_.push_back({found.cameras[k], coco ? coco->mask(k, edit.labels) : read_mask(found.masks[k])});
       batch_.back().camera.eye *= edit.scale;
       if (edit.labels.empty())
         for (std::uint8_t& label : batch_.back().mask.labels) label = label >= least ? 1 : 0;
@@ -206,7 +206,8 @@ REBAKE_DESCRIBE_EDIT(
       visit("node", edit.node, Need::optional,
             "only this node and its children; default: all visible, unlocked objects");
       visit("labels", edit.labels, Need::optional,
-            "values of pixels, or COCO categories, that are inside, 1 to 255; default: 128 to 255, or all categories");
+            "values of pixels, or COCO categories, that are inside, 1 to 255; default: 128 to 255, or all categories. "
+            "Where several of these categories overlap, the last annotation of the file counts");
       visit("threshold", edit.threshold, Need::optional,
             "share of the votes that a triangle needs, above 0, at most 1");
       visit("store", edit.store, Need::optional,

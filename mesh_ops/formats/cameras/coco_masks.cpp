@@ -149,11 +149,12 @@ CocoMasks::CocoMasks(const fs::path& file, const std::vector<PhotoCamera>& camer
   });
 }
 
-LabelImage CocoMasks::mask(std::size_t camera) const {
+LabelImage CocoMasks::mask(std::size_t camera, const std::vector<int>& labels) const {
   const Mask& mask = masks_[camera];
   LabelImage image{mask.width, mask.height, {}};
   image.labels.resize(static_cast<std::size_t>(mask.width) * static_cast<std::size_t>(mask.height));
   for (const Annotation& annotation : mask.annotations) {
+    if (!labels.empty() && std::find(labels.begin(), labels.end(), annotation.label) == labels.end()) continue;
     std::int64_t at = 0;
     bool inside = false;
     for (const std::int64_t run : annotation.runs) {

@@ -19,8 +19,8 @@ class CocoMasks {
   CocoMasks(const std::filesystem::path& file, const std::vector<PhotoCamera>& cameras);
   /// Whether the file has an entry for the photograph of a camera.
   bool has(std::size_t camera) const { return masks_[camera].width > 0; }
-  /// The mask of a camera's photograph; without annotations all pixels are 0.
-  LabelImage mask(std::size_t camera) const;
+  /// The mask of a camera's photograph, of annotations with one of these labels; none: of all. Other pixels are 0.
+  LabelImage mask(std::size_t camera, const std::vector<int>& labels = {}) const;
 
  private:
   struct Annotation {

@@ -70,6 +70,8 @@ TEST_F(CocoMasksTest, LaterAnnotationsCount) {
   two["annotations"][1]["category_id"] = 9;
   two["annotations"][1]["segmentation"]["counts"] = {0, 12};
   EXPECT_EQ(read(two).mask(0).labels, std::vector<std::uint8_t>(12, 9));
+  EXPECT_EQ(read(two).mask(0, {9, 3}).labels, std::vector<std::uint8_t>(12, 9));
+  EXPECT_EQ(read(two).mask(0, {3}).labels, coco_mask) << "only among the labels that are asked for";
 }
 
 TEST_F(CocoMasksTest, ImagesWithoutAnnotationsAreEmptyMasks) {
