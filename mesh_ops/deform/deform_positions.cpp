@@ -60,10 +60,10 @@ DeformedPositions deform_positions(const BakedObject& object, const WeldedCorner
     }
     determinants[i] = moved.jacobians[i].determinant();
     if (moved.points[i] == world[i] && moved.jacobians[i].isIdentity(0)) return;
-    changed[i] = 1;
     const LocalRotation local = local_orthogonal(moved.jacobians[i] * scales);
     defined[i] = local.defined ? 1 : 0;
     rotations[i] = frame.transpose() * local.rotation * frame;
+    changed[i] = moved.points[i] != world[i] || !rotations[i].isIdentity(0) ? 1 : 0;
   });
   if (std::any_of(moved.outside.begin(), moved.outside.end(), [](auto flag) { return flag != 0; })) {
     std::vector<std::uint8_t> shows(count, 0);

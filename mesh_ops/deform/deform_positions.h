@@ -12,7 +12,7 @@ namespace rebake {
 /// Statistics of the deformation of an object. Counts are numbers of welded corners ("places") of deformed triangles.
 struct DeformationReport {
   std::size_t points = 0;          ///< all places
-  std::size_t changed = 0;         ///< places that move, or whose Jacobian is not the identity
+  std::size_t changed = 0;         ///< places that move or rotate
   std::size_t folded = 0;          ///< places with det J ≤ 0: mirrored or collapsed
   std::size_t undefined = 0;       ///< places without a unique nearest rotation; they take a neighbour's
   std::size_t outside = 0;         ///< places where the coordinates are undefined; they do not move

@@ -1,6 +1,7 @@
 #include "render/web_page/web_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -418,10 +419,16 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
   const auto say = [&](const char* name, bool carried, const std::string& why) {
     page.decisions.push_back(fmt::format("{} {}: {}", carried ? "carried" : "left out", name, why));
   };
-  say("keyframes", motion.has_value(),
-      !motion ? "nothing moves"
-              : fmt::format("{} nodes{} move, {:.4g} s long", motion->places.size(),
-                            motion->cameras.empty() ? "" : " and the camera", motion->duration()));
+  std::string moving = "nothing moves";
+  if (motion) {
+    std::vector<std::string> parts;
+    if (const std::size_t nodes = motion->places.size(); nodes > 0)
+      parts.push_back(nodes == 1 ? "1 node moves" : fmt::format("{} nodes move", nodes));
+    if (!motion->cameras.empty()) parts.emplace_back("the camera moves");
+    if (scene.poses != nullptr && !scene.poses->empty()) parts.emplace_back("bends change");
+    moving = fmt::format("{}; {:.4g} s long", fmt::join(parts, ", "), motion->duration());
+  }
+  say("keyframes", motion.has_value(), moving);
   if (motion && scene.lighting.maps.size() > 0)
     say("light of moving nodes", false, "light maps stay as they are while nodes move");
   double deviation = 0;

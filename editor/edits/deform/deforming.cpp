@@ -126,7 +126,9 @@ Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, 
         !box.isEmpty() && !(box.min().cwiseAbs().maxCoeff() < farthest && box.max().cwiseAbs().maxCoeff() < farthest))
       throw EditError(fmt::format("the coordinates of \"{}\" would be too large", set.nodes[k].node->name));
     result = with_changed(result, set.nodes[k].node->id, [&](Node& node) {
-      if (changed) node.object = std::move(made.object);
+      // Without effect, only the flags of folded triangles may change.
+      if (changed || folded_triangles(*made.object) != folded_triangles(*node.object))
+        node.object = std::move(made.object);
     });
     check_subtree(result, set.nodes[k].node->id);
   }

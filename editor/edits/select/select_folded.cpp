@@ -12,7 +12,7 @@ Scene apply(const Scene& scene, const SelectFolded& edit) {
 
 REBAKE_DESCRIBE_EDIT(
     SelectFolded,
-    "Selects triangles that the last deformation that moved their object folded or collapsed (det J ≤ 0 at a vertex).",
+    "Selects triangles that the last deformation of their object folded or collapsed (det J ≤ 0 at a vertex).",
     (auto& edit, auto& visit) {
       visit("node", edit.node, Need::optional,
             "only this node and its children; default: all visible, unlocked objects");

@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/deform/bends/closed_form.h"
@@ -170,6 +171,22 @@ TEST(Deform, FalloffDoesNotDependOnFarTriangles) {
             std::max(worst, (a[alone->sets[0].soup.faces()[f][k]] - b[with_stray->sets[0].soup.faces()[f][k]]).norm());
     EXPECT_EQ(worst, 0) << far;
   }
+}
+
+TEST(Deform, CountsPlacesThatMoveOrRotate) {
+  const auto object = made_object();
+  std::set<std::array<double, 3>> beside;  // the plane y = 0
+  for (const TextureSet& set : object->sets)
+    for (const Vec3& p : set.soup.positions())
+      if (p.y() != 0) beside.insert({p.x(), p.y(), p.z()});
+  const auto changed = [&](const Mat3& linear) {
+    return deformed(*object, Affine::Identity(), all(*object), 0, affine(linear)).report.changed;
+  };
+  EXPECT_EQ(changed(Mat3::Identity()), 0U);
+  EXPECT_EQ(changed(Vec3(1, 2, 1).asDiagonal()), beside.size());
+  const DeformationReport sheared =
+      deformed(*object, Affine::Identity(), all(*object), 0, affine(Mat3{{1, 0.5, 0}, {0, 1, 0}, {0, 0, 1}})).report;
+  EXPECT_EQ(sheared.changed, sheared.points) << "all rotate";
 }
 
 TEST(Deform, CountsFoldsWithoutNaN) {

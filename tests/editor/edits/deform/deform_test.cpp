@@ -200,6 +200,12 @@ TEST_F(DeformScript, FoldsAreReportedAndSelectable) {
   const std::size_t folded = count(*find(session.scene(), "ball")->selection);
   EXPECT_GT(folded, 10U);
   EXPECT_LT(folded, 1000U);
+  said.clear();
+  run(R"({"op": "bend", "node": "ball", "degrees": 0}
+{"op": "select_folded"})");
+  EXPECT_NE(said.find("nothing moved"), std::string::npos) << said;
+  const auto now = find(session.scene(), "ball")->selection;
+  EXPECT_TRUE(now == nullptr || count(*now) == 0) << "of the last deformation";
 }
 
 TEST_F(DeformScript, DuplicatePointsMoveOnceAndGrowthIsReported) {
