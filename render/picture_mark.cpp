@@ -132,11 +132,11 @@ std::string with_exif(const std::string& webp, int width, int height, bool has_a
 const std::pair<std::string, std::string> openexr_mark{"Software", std::string(name) + std::string(blank)};
 
 std::string with_mark(const std::string& bytes, int width, int height, bool has_alpha) {
-  std::string marked = bytes.starts_with(png_signature) ? with_text_chunk(bytes)
-                       : bytes.starts_with(jpeg_start)  ? with_comment(bytes)
-                       : bytes.starts_with("RIFF"sv)    ? with_exif(bytes, width, height, has_alpha)
-                       : bytes.starts_with(svg_start)   ? with_xml_comment(bytes)
-                                                        : bytes;
+  std::string marked = bytes.starts_with(png_signature) && bytes.size() >= after_header ? with_text_chunk(bytes)
+                       : bytes.starts_with(jpeg_start)                                  ? with_comment(bytes)
+                       : bytes.starts_with("RIFF"sv)  ? with_exif(bytes, width, height, has_alpha)
+                       : bytes.starts_with(svg_start) ? with_xml_comment(bytes)
+                                                      : bytes;
   const std::optional<Place> place = place_in(marked);
   return place ? sealed(std::move(marked), *place) : marked;
 }

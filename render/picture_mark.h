@@ -13,6 +13,7 @@ extern const std::pair<std::string, std::string> openexr_mark;
 /// Rebake, and holds a hash of all other bytes, so that it becomes wrong if someone changes the picture. `width`,
 /// `height`, `has_alpha`: of a WebP.
 std::string with_mark(const std::string& bytes, int width, int height, bool has_alpha);
+/// The same for a PNG or SVG.
 std::string with_mark(const std::string& png_or_svg);
 
 /// Whether a PNG, JPEG, WebP, SVG or OpenEXR file carries the mark, and is as it was written. False for files that

@@ -65,7 +65,8 @@ void check_output(const fs::path& folder, const std::vector<std::string>& names,
     refuse_replacing_captured(file);
     if (fs::exists(fs::symlink_status(file, error)) && (fs::is_symlink(file, error) || !is_rendered_picture(file)))
       throw FileError(file,
-                      "exists and was not made by Rebake, was changed since, or is a link; choose another folder");
+                      "exists and was not made by Rebake, was changed since, is of an earlier build, or is a link; "
+                      "choose another folder");
   }
   const fs::path table = folder / table_name;
   sources.check_file(table);

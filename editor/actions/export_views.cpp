@@ -38,7 +38,7 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
   const bool own = std::filesystem::is_regular_file(path, error) && wrote(path);
   if (there == nullptr) {
     // Only files that end in .json are recognised.
-    if (!own) refuse("exists and is not a camera file of Rebake, or was changed since");
+    if (!own) refuse("exists and is not a camera file of Rebake, was changed since, or is of an earlier build");
     return;
   }
   if (there->write == nullptr) refuse(fmt::format("has cameras in the format {}, which is not written", there->name));
@@ -49,7 +49,7 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
   const bool same = std::all_of(cameras.begin(), cameras.end(), [&](const PhotoCamera& camera) {
     return std::find(names.begin(), names.end(), std::filesystem::path(camera.name).stem().string()) != names.end();
   });
-  if (!own) refuse("has cameras that Rebake did not write, or that were changed since");
+  if (!own) refuse("has cameras that Rebake did not write, that were changed since, or that are of an earlier build");
   if (!same && !capture_files(path, cameras).empty()) refuse("has the cameras of photographs beside it");
 }
 

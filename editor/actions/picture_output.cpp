@@ -23,13 +23,15 @@ void refuse_replacing_unnamed(const std::filesystem::path& file, const std::file
     if (std::filesystem::is_regular_file(file, error) && std::filesystem::file_size(file, error) > 0 &&
         !is_rendered_picture(file))
       throw FileError(file,
-                      "exists and was not made by Rebake, or was changed since, so it is not replaced; choose another "
+                      "exists and was not made by Rebake, was changed since, or is of an earlier build; choose another "
                       "name, or remove it first");
     return;
   }
   if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return;
   if (std::filesystem::is_symlink(file, error) || !is_rendered_picture(file))
-    throw FileError(file, "exists and was not made by Rebake, was changed since, or is a link; choose another name");
+    throw FileError(file,
+                    "exists and was not made by Rebake, was changed since, is of an earlier build, or is a link; "
+                    "choose another name");
   refuse_replacing_captured(file);
 }
 

@@ -53,7 +53,7 @@ void check_report_is_ours(const fs::path& file) {
   std::error_code gone;
   if (!fs::exists(file, gone)) return;
   const nlohmann::json there = nlohmann::json::parse(read_file(file), nullptr, false);
-  if (!there.is_object() || !there.contains("software"))
+  if (!there.is_object() || there.value("software", nlohmann::json()) != "Rebake")
     throw FileError(file, "is no report of a training; move it, or choose another output folder");
 }
 

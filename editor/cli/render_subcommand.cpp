@@ -146,9 +146,9 @@ void refuse_replacing_capture(const std::filesystem::path& file, const std::file
           .lexically_relative(std::filesystem::weakly_canonical(capture_folder(cameras), error));
   const bool in_capture = !inside.empty() && *inside.begin() != "..";
   if (std::filesystem::is_symlink(file, error) || !is_rendered_picture(file))
-    throw FileError(
-        file, in_capture ? "exists in the capture's folder; name a new folder for the pictures"
-                         : "exists and was not rendered by Rebake, was changed since, or is a link; name a new folder");
+    throw FileError(file, in_capture ? "exists in the capture's folder; name a new folder for the pictures"
+                                     : "exists and was not rendered by Rebake, was changed since, is of an earlier "
+                                       "build, or is a link; name a new folder");
 }
 
 // Writes a picture for each camera of a file into a folder, named after the photographs.

@@ -98,7 +98,7 @@ void refuse_replacing_video(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file, error) || std::filesystem::file_size(file, error) == 0) return;
   if (!is_marked_video(read_file(file)))
     throw FileError(
-        file, "exists and is not a video of Rebake, or was changed since, so it is not replaced; choose another name");
+        file, "exists and is not a video of Rebake, was changed since, or is of an earlier build; choose another name");
 }
 
 }  // namespace rebake

@@ -163,12 +163,9 @@ void write_plot(const Study& study, const StudyTable& table, std::size_t x, cons
     write(base + "." + extension, run_gnuplot(fmt::format("{}set terminal {}\nplot {}\n", plot, terminal, points)));
 }
 
-}  // namespace
-
-namespace {
-
 void refuse_foreign_picture(const std::filesystem::path& file) {
-  if (std::error_code error; std::filesystem::exists(file, error) && !is_rendered_picture(file))
+  if (std::error_code error;
+      std::filesystem::exists(file, error) && std::filesystem::file_size(file, error) > 0 && !is_rendered_picture(file))
     throw FileError(file, "was not made by a study, was changed since, or is of an earlier build; move it elsewhere");
 }
 

@@ -134,22 +134,23 @@ double median_milliseconds(int repeats, const std::function<void()>& run);
 /// cannot be written or `guard` protects it, and Error if gnuplot, which plots need, is missing.
 void write_study(const Study& study, const StudyTable& table, const std::filesystem::path& folder,
                  const SourceGuard& guard);
+/// Writes a picture into a study's own folder, in which tables are replaced, but no picture that no study made, or that
+/// someone changed since. Throws FileError for those.
+void write_study_picture(const Image& picture, const std::filesystem::path& file);
+
 /// A line of a line_plot(): points in the order of x.
 struct PlottedLine {
   std::string name;
   std::vector<std::array<double, 2>> points;
 };
-/// Writes a picture into a study's own folder. Throws FileError, also if there is one that no study made, or that
-/// someone changed since.
-void write_study_picture(const Image& picture, const std::filesystem::path& file);
-
 /// Writes BASE.svg and BASE.png into a study's own folder, as write_study_picture() does. Throws FileError, and Error
 /// if gnuplot is missing. `log_y`: logarithmic.
 void write_line_plot(const std::string& title, const std::string& x, const std::string& y, bool log_y,
                      const std::vector<PlottedLine>& lines, const std::string& base);
 
 /// The folder for further files of a study, FOLDER/`study`, with a marker in it. Throws FileError if there is something
-/// of that name that the study did not make, if someone changed a picture in it, or if the study reads something in it.
+/// of that name that the study did not make, if there is a picture in it that no study made or that someone changed, or
+/// if the study reads something in it.
 std::filesystem::path own_folder(const StudyInput& input, const std::string& study);
 
 /// Creates the folder and checks all outputs, so that problems are found before the measurement. Throws FileError.

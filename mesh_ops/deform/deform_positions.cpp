@@ -52,6 +52,7 @@ DeformedPositions deform_positions(const BakedObject& object, const WeldedCorner
   std::vector<double>& determinants = result.determinants;
   determinants.assign(count, 1);
   std::vector<std::uint8_t> defined(count, 1), is_number(count, 1), changed(count, 0);
+  constexpr double rounding = 1e-13;  // of rotations between frames
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
     if (!world[i].allFinite() || !moved.points[i].allFinite() || !moved.jacobians[i].allFinite()) {
       moved.points[i] = world[i];
@@ -63,7 +64,7 @@ DeformedPositions deform_positions(const BakedObject& object, const WeldedCorner
     const LocalRotation local = local_orthogonal(moved.jacobians[i] * scales);
     defined[i] = local.defined ? 1 : 0;
     rotations[i] = frame.transpose() * local.rotation * frame;
-    changed[i] = moved.points[i] != world[i] || !rotations[i].isIdentity(0) ? 1 : 0;
+    changed[i] = moved.points[i] != world[i] || !rotations[i].isIdentity(rounding) ? 1 : 0;
   });
   if (std::any_of(moved.outside.begin(), moved.outside.end(), [](auto flag) { return flag != 0; })) {
     std::vector<std::uint8_t> shows(count, 0);

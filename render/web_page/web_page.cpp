@@ -426,6 +426,7 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
       parts.push_back(nodes == 1 ? "1 node moves" : fmt::format("{} nodes move", nodes));
     if (!motion->cameras.empty()) parts.emplace_back("the camera moves");
     if (scene.poses != nullptr && !scene.poses->empty()) parts.emplace_back("bends change");
+    if (parts.empty()) parts.emplace_back("no node moves");
     moving = fmt::format("{}; {:.4g} s long", fmt::join(parts, ", "), motion->duration());
   }
   say("keyframes", motion.has_value(), moving);

@@ -112,7 +112,7 @@ Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, 
     DeformedObject made =
         deformed(*set.nodes[k].node->object, set.nodes[k].to_world, set.flags[k], falloff, deformation);
     const bool changed = made.report.changed > 0;
-    if (changed || made.report.outside > 0 || made.report.not_finite > 0)
+    if (changed || made.report.folded > 0 || made.report.outside > 0 || made.report.not_finite > 0)
       report.lines.push_back(in_words(set.nodes[k].node->name, made.report));
     if (made.report.opaque_outside > 0)
       throw EditError(fmt::format(
@@ -126,7 +126,7 @@ Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, 
         !box.isEmpty() && !(box.min().cwiseAbs().maxCoeff() < farthest && box.max().cwiseAbs().maxCoeff() < farthest))
       throw EditError(fmt::format("the coordinates of \"{}\" would be too large", set.nodes[k].node->name));
     result = with_changed(result, set.nodes[k].node->id, [&](Node& node) {
-      // Without effect, only the flags of folded triangles may change.
+      // Without effect, only the flags of folded triangles may change; the node is new, so that tools see the step.
       if (changed || folded_triangles(*made.object) != folded_triangles(*node.object))
         node.object = std::move(made.object);
     });

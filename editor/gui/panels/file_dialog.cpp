@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "editor/actions/picture_output.h"
 #include "editor/document/replaced_work.h"
 #include "editor/document/sample_folder.h"
 #include "editor/edits/nodes/import.h"
@@ -143,6 +144,7 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
       break;
     case FileDialogPurpose::screenshot:
       refuse_replacing_work(path);
+      refuse_replacing_unnamed(path, path);
       editor.jobs.screenshot = Jobs::Screenshot{path, width_, height_, shows};
       break;
     case FileDialogPurpose::turntable:

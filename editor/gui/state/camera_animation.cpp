@@ -28,7 +28,8 @@ void refuse_other_pictures(const fs::path& folder, std::size_t count) {
     if (!fs::exists(fs::symlink_status(picture, error))) continue;
     if (fs::is_symlink(picture, error) || !is_rendered_picture(picture))
       throw FileError(picture,
-                      "exists and was not rendered by Rebake, was changed since, or is a link; choose a new folder");
+                      "exists and was not rendered by Rebake, was changed since, is of an earlier build, or is a link; "
+                      "choose a new folder");
     refuse_replacing_work(picture);
     refuse_replacing_captured(picture);
   }

@@ -56,6 +56,7 @@ struct Sweep {
 };
 
 void write_sweep(const StudyInput& input, const Sweep& sweep, const std::vector<DprtMethod>& methods) {
+  const std::string base = (own_folder(input, "dprt") / sweep.file).string();
   std::string csv = sweep.x;
   std::vector<PlottedLine> lines;
   for (const DprtMethod& method : methods) {
@@ -73,7 +74,6 @@ void write_sweep(const StudyInput& input, const Sweep& sweep, const std::vector<
     }
     csv += "\n";
   }
-  const std::string base = (own_folder(input, "dprt") / sweep.file).string();
   write_file_atomically(base + ".csv", csv, {});
   try {
     write_line_plot(sweep.title, sweep.x, "error %", false, lines, base);

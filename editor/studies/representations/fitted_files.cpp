@@ -126,13 +126,24 @@ std::string text_of(const RepresentationSizes& sizes) {
                      sizes.picture);
 }
 
-// For files that are written over those of a worse result, which may have more of them. Other files stay.
+// The folder without the pictures of a worse result, which may have more of them. Throws FileError if it holds anything
+// that the study did not write.
 fs::path fresh_folder(const fs::path& folder) {
+  constexpr const char* own[] = {"scene_params.json", "tree.npz"};
   fs::create_directories(folder);
   std::vector<fs::path> old;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".png" && is_rendered_picture(entry.path())) old.push_back(entry.path());
-  for (const fs::path& picture : old) fs::remove(picture);
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const fs::path& file = entry.path();
+    const std::string name = file.filename().string();
+    if (std::find(std::begin(own), std::end(own), name) != std::end(own)) continue;
+    const bool left =
+        std::any_of(std::begin(own), std::end(own), [&](const char* one) { return is_partial_of(name, one); });
+    if (!left && !is_rendered_picture(file))
+      throw FileError(file,
+                      "was not written by the study, was changed since, or is of an earlier build; move it elsewhere");
+    old.push_back(file);
+  }
+  for (const fs::path& file : old) fs::remove(file);
   return folder;
 }
 void write_best(const FittedFiles& fitted, const SnergScene& best) {

@@ -81,7 +81,7 @@ std::set<std::string> own_baked_files(const fs::path& folder) {
   std::error_code error;
   if (fs::is_regular_file(folder / training_report, error))
     if (const json report = json::parse(read_file(folder / training_report), nullptr, false);
-        report.is_object() && report.contains("software"))
+        report.is_object() && report.value("software", json()) == "Rebake")
       names.insert(training_report);
   if (!fs::is_regular_file(folder / "mlp.json", error) || !has_baked_decoder(folder)) return names;
   names.merge(names_of_scene(folder, baked_files, is_baked_file_name));

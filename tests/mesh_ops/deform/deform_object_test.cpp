@@ -184,6 +184,10 @@ TEST(Deform, CountsPlacesThatMoveOrRotate) {
   };
   EXPECT_EQ(changed(Mat3::Identity()), 0U);
   EXPECT_EQ(changed(Vec3(1, 2, 1).asDiagonal()), beside.size());
+  // Also in a frame that is rotated about the axis.
+  const Affine rotated(Eigen::AngleAxisd(0.3, Vec3::UnitY()));
+  EXPECT_EQ(deformed(*object, rotated, all(*object), 0, affine(Vec3(1, 2, 1).asDiagonal())).report.changed,
+            beside.size());
   const DeformationReport sheared =
       deformed(*object, Affine::Identity(), all(*object), 0, affine(Mat3{{1, 0.5, 0}, {0, 1, 0}, {0, 0, 1}})).report;
   EXPECT_EQ(sheared.changed, sheared.points) << "all rotate";
