@@ -70,8 +70,8 @@ void check_output(const fs::path& folder, const std::vector<std::string>& names,
   }
   const fs::path table = folder / table_name;
   sources.check_file(table);
-  if (fs::exists(table, error) && !read_file(table).starts_with(table_header))
-    throw FileError(table, "exists and is not a table of this comparison; choose another folder");
+  if (fs::is_symlink(table, error) || (fs::exists(table, error) && !read_file(table).starts_with(table_header)))
+    throw FileError(table, "exists and is not a table of this comparison, or is a link; choose another folder");
 }
 
 Image halved(const Image& image) {

@@ -17,17 +17,23 @@ bool same_selection(const Node& a, const Node& b) {
 
 std::size_t selected_of(const Node& node) { return node.selection ? count(*node.selection) : 0; }
 
-// Number of triangles with a corner elsewhere; 0 if the triangles of both objects do not correspond.
+// Number of triangles of which a corner moved or rotated; 0 if the triangles of both objects do not correspond.
 std::size_t moved_between(const BakedObject& before, const BakedObject& after) {
   if (before.sets.size() != after.sets.size()) return 0;
+  const PackedRotation none{};
   std::size_t moved = 0;
   for (std::size_t s = 0; s < before.sets.size(); ++s) {
     const Soup &old = before.sets[s].soup, &now = after.sets[s].soup;
     if (old.faces().size() != now.faces().size()) return 0;
-    if (&old.positions() == &now.positions()) continue;
+    if (&old.positions() == &now.positions() && old.rotations() == now.rotations()) continue;
+    const auto rotation = [&](const Soup& soup, std::uint32_t v) {
+      return soup.rotations() != nullptr ? (*soup.rotations())[v] : none;
+    };
     for (std::size_t f = 0; f < old.faces().size(); ++f)
       moved += std::equal(old.faces()[f].begin(), old.faces()[f].end(), now.faces()[f].begin(),
-                          [&](std::uint32_t a, std::uint32_t b) { return old.positions()[a] == now.positions()[b]; })
+                          [&](std::uint32_t a, std::uint32_t b) {
+                            return old.positions()[a] == now.positions()[b] && rotation(old, a) == rotation(now, b);
+                          })
                    ? 0
                    : 1;
   }
@@ -71,7 +77,8 @@ SceneChange change_between(const Scene& before, const Scene& after) {
     if (node->object) change.triangles_after += node->object->triangle_count();
   }
   for (const PlacedNode& placed : placed_nodes(after))
-    if (now.contains(placed.node->id)) change.added.push_back(placed.node->name);
+    if (now.contains(placed.node->id) && !now.contains(parent_of(after, placed.node->id)))
+      change.added.push_back(placed.node->name);
   return change;
 }
 

@@ -14,9 +14,9 @@ struct SceneChange {
   std::vector<std::string> with_selected;  ///< names of changed nodes with selected triangles afterwards
   std::size_t selected_before = 0, selected_after = 0;
   std::size_t triangles_before = 0, triangles_after = 0;
-  std::size_t moved = 0;  ///< triangles with a corner elsewhere in their node, if none was added or removed
+  std::size_t moved = 0;                ///< triangles of which a corner moved or rotated, if none was added or removed
   std::vector<std::string> with_moved;  ///< names of nodes with such triangles
-  std::vector<std::string> added;       ///< names of new nodes
+  std::vector<std::string> added;       ///< names of new nodes that are not inside other new ones
 };
 
 SceneChange change_between(const Scene& before, const Scene& after);

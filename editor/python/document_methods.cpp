@@ -117,7 +117,10 @@ std::vector<std::string> export_with(PyDocument& document, const py::dict& field
   document.work([&](Session& session) {
     const auto action = read_action<ExportAction>(line, session.scene());
     if (!action.plain) {
+      std::error_code error;
+      const bool replaces = std::filesystem::exists(action.out, error);
       notes = write_export(session, action).notes;
+      if (replaces) notes.push_back(action.out + " existed already and was replaced");
       return;
     }
     notes = notes_of(session, action);

@@ -39,7 +39,7 @@ bool is_own(const fs::directory_entry& entry) {
   if (!entry.is_regular_file(error) || entry.file_size(error) == 0) return true;
   // A killed run leaves the part that it has written.
   if (std::none_of(std::begin(own), std::end(own), [&](const char* one) { return name == one; })) return true;
-  if (name == preview_name) return is_picture_file(entry.path());
+  if (name == preview_name) return is_rendered_picture(entry.path());
   if (name == table_name) return read_file(entry.path()).starts_with(table_header);
   return name == checkpoint_name && is_checkpoint(entry.path());
 }
@@ -279,7 +279,9 @@ void TrainingRun::train(const Progress& progress) {
 
 void TrainingRun::remove_work_files() {
   std::error_code error;
-  for (const char* name : {checkpoint_name, preview_name, table_name, lock_name}) fs::remove(work_ / name, error);
+  for (const char* name : {checkpoint_name, preview_name, table_name, lock_name})
+    if (const fs::directory_entry entry(work_ / name, error); entry.exists(error) && is_own(entry))
+      fs::remove(entry.path(), error);
   fs::remove(work_, error);  // stays if it holds other files
 }
 

@@ -122,6 +122,7 @@ class Module(unittest.TestCase):
         self.assertEqual(list(parameters)[1:6], ["path", "layout", "format", "plain", "width"])
         self.document.duplicate(node="ficus", translate=[2, 0, 0])
         self.assertEqual(self.document.export(self.at / "unsplit", "unsplit", nodes=["ficus.2"]), [])
+        self.assertIn("was replaced", self.document.export(self.at / "unsplit", "unsplit", nodes=["ficus.2"])[0])
         self.assertTrue((self.at / "unsplit" / "shape.obj").is_file())
         self.document.export(self.at / "scene", format="rebake")
         self.assertTrue((self.at / "scene" / "scene.json").is_file())

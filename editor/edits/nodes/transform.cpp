@@ -61,8 +61,8 @@ std::string done_words(const Transform& edit) {
 
 std::string change_title(const Transform& edit, const SceneChange& change, const Transform*) {
   if (!edit.selection) return "";
-  const std::string part = change.selected_before > 0 ? triangles_text(change.selected_before) + " of " : "";
-  return done_words(edit) + " " + part + listed(change.names);
+  if (change.moved == 0) return done_words(edit) + " 0 triangles";
+  return done_words(edit) + " " + triangles_text(change.moved) + " of " + listed(change.with_moved);
 }
 
 REBAKE_DESCRIBE_EDIT(

@@ -11,6 +11,7 @@
 #include "editor/gui/state/settings.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/formats.h"
+#include "render/image.h"
 
 namespace rebake {
 
@@ -97,8 +98,8 @@ void empty_trash() {
 void forget_thumbnails_without_journal() {
   sweep(thumbnail_path("x").parent_path(), [](const fs::path& path) {
     std::error_code unknown;
-    return path.extension() == ".png" && !fs::exists(journal_folder() / path.stem(), unknown) &&
-           !fs::exists(trash_folder() / path.stem(), unknown);
+    return path.extension() == ".png" && is_rendered_picture(path) &&
+           !fs::exists(journal_folder() / path.stem(), unknown) && !fs::exists(trash_folder() / path.stem(), unknown);
   });
 }
 

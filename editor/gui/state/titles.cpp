@@ -12,16 +12,20 @@ namespace rebake {
 
 namespace {
 
+// The nodes that edits work on: of those that name one as "node", other nodes are places or models.
 std::vector<std::string> named(const std::vector<Edit>& group, const Scene& before, const Scene& after) {
   std::vector<std::string> names;
   std::set<NodeId> seen;
-  for (const Edit& edit : group)
-    for (const NodeId id : edit.type().named_nodes(edit.value())) {
+  for (const Edit& edit : group) {
+    std::vector<NodeId> ids = edit.type().named_nodes(edit.value());
+    if (!ids.empty() && to_json(edit).contains("node")) ids.resize(1);
+    for (const NodeId id : ids) {
       if (!seen.insert(id).second) continue;
       NodePtr node = find(before, id);
       if (!node) node = find(after, id);
       if (node) names.push_back(node->name);
     }
+  }
   return names;
 }
 

@@ -74,7 +74,7 @@ void Thumbnails::keep(const std::string& path, const std::vector<std::string>& r
   std::set<fs::path> wanted = {file};
   for (const std::string& one : recent) wanted.insert(picture_file(one));
   for (const fs::directory_entry& entry : fs::directory_iterator(file.parent_path()))
-    if (std::error_code error; !wanted.contains(entry.path()) && is_picture_file(entry.path()))
+    if (std::error_code error; !wanted.contains(entry.path()) && is_rendered_picture(entry.path()))
       fs::remove(entry.path(), error);
   write_picture(thumbnail_of(seen, width, height), file, {});
   files_.erase(file);

@@ -54,6 +54,12 @@ TEST_F(ComparePhotographs, KeepsFilesOfOthersAndTheCapture) {
   write_text(at("mine/photographs.csv"), "my table");
   expect_error(compare_ + R"(, "out": "{here}/mine"})", "is not a table of this comparison");
   EXPECT_EQ(read_file(at("mine/photographs.csv")), "my table");
+  run(compare_ + R"(, "out": "{here}/out"})");
+  const std::string first = read_file(at("out/photographs.csv"));
+  std::filesystem::create_directories(at("linked"));
+  std::filesystem::create_symlink(at("out/photographs.csv"), at("linked/photographs.csv"));
+  expect_error(compare_ + R"(, "out": "{here}/linked"})", "or is a link");
+  EXPECT_EQ(read_file(at("out/photographs.csv")), first);
   fs::remove(at("cap/b.png"));
   run(compare_ + "}");
   EXPECT_NE(said().find("1 of 2 photographs are missing, the first is \"b.png\""), std::string::npos);

@@ -213,6 +213,11 @@ TEST_F(Train, CheckpointsThatCannotBeWrittenDoNotStopIt) {
     EXPECT_EQ(read_file(at("named.training") / fs::path(name)), "mine");
     fs::remove(at("named.training") / fs::path(name));
   }
+  fs::copy(at("cap/transforms_train00.png"), at("named.training/rebake-preview.png"));
+  write_text(at("named.training/rebake-preview.png"), read_file(at("named.training/rebake-preview.png")) + "retouched");
+  expect_error(
+      R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/named", "side": 16, "steps": 100, "fresh": true})",
+      "rebake-preview.png");
   EXPECT_EQ(folder_hash(at("cap")), photograph_bytes);
   fs::create_directories(at("out.training/rebake-checkpoint"));  // a folder where the file should be
   run(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/out", "side": 16, "steps": 100, "fresh": true})");

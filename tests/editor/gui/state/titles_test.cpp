@@ -1,6 +1,8 @@
 // Titles of the steps in the history.
 #include "editor/gui/state/titles.h"
 
+#include "editor/edits/scene_change.h"
+#include "mesh_ops/deform/deform_object.h"
 #include "tests/support/document_fixture.h"
 
 namespace rebake::test {
@@ -50,6 +52,31 @@ TEST_F(Titles, NameOnlyObjectsThatALimitedDeformationMoves) {
   EXPECT_EQ(find(document_.scene(), "a")->object, before);
   EXPECT_EQ(title_after(R"({"op": "twist", "degrees": 30, "origin": [0, 0, 0], "from": 50, "to": 60})"),
             "Twisted by 30°: 0 triangles");
+}
+
+// As the faces in the foot plane of a twist.
+TEST(SceneChange, CountsTrianglesThatOnlyRotate) {
+  const auto object = made_object();
+  const auto turn = [](const std::vector<Vec3>& points) {
+    const Mat3 quarter{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
+    return DeformedPoints{points, std::vector<Mat3>(points.size(), quarter), {}};
+  };
+  const TriangleSet all(object->triangle_count(), 1);
+  const auto turned = deformed(*object, Affine::Identity(), all, 0, turn).object;
+  const SceneChange change = change_between(scene_of(object, "ball"), scene_of(turned, "ball"));
+  EXPECT_EQ(change.moved, object->triangle_count());
+  EXPECT_EQ(change.with_moved, std::vector<std::string>{"ball"});
+}
+
+TEST_F(Titles, CountOnlyWhatATransformMoves) {
+  act(document_, R"({"op": "select", "node": "b", "all": true})");
+  EXPECT_EQ(title_after(R"({"op": "transform", "node": "b", "selection": true})"), "Moved 0 triangles");
+}
+
+TEST_F(Titles, NameTheNodesThatEditsWorkOn) {
+  EXPECT_EQ(title_after(R"({"op": "group", "nodes": ["a"], "as": "g"})"), "Grouped a as g");
+  EXPECT_EQ(title_after(R"({"op": "duplicate", "node": "g"})"), "Copied g as g.2");
+  EXPECT_EQ(title_after(R"({"op": "reorder", "node": "b", "parent": "g", "index": 0})"), "Moved in the outline: b");
 }
 
 TEST_F(Titles, CountWhatAnEditChanged) {
