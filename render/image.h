@@ -29,7 +29,8 @@ std::string picture_extensions();
 void check_picture_path(const std::filesystem::path& path, const SourceGuard& guard);
 /// Whether a file begins as a picture of a known format.
 bool is_picture_file(const std::filesystem::path& path);
-/// Whether a file is a picture that Rebake wrote and nobody changed: a PNG, JPEG, WebP or OpenEXR with its mark.
+/// Whether a file is a picture that Rebake wrote and nobody changed: a PNG, JPEG, WebP, OpenEXR or
+/// SVG with its mark (picture_mark.h).
 bool is_rendered_picture(const std::filesystem::path& path);
 /// Whether write_picture() can write alpha into a file of this name: not into JPEGs.
 bool holds_alpha(const std::filesystem::path& path);
