@@ -207,6 +207,7 @@ void run(Session& session, const ComparePhotographsAction& action) {
                           action.gain ? " after a gain per channel" : "", psnr, ssim, flip));
   if (!action.out.empty()) {
     write_file_atomically(fs::path(action.out) / table_name, table_of(rows), sources);
+    check_output(action.out, {fs::path(sheet_name).stem().string()}, sources);  // it may have appeared since
     write_picture(sheet_of(std::move(rows), action.worst), fs::path(action.out) / sheet_name, sources);
     session.outputs.push_back(action.out);
     session.say(fmt::format("wrote the comparison to {}; {} shows the worst", action.out, sheet_name));

@@ -2,6 +2,7 @@
 
 #include "editor/actions/describe_action.h"
 #include "editor/actions/lit.h"
+#include "editor/actions/output_state.h"
 #include "editor/actions/plain_scene.h"
 #include "editor/actions/views.h"
 #include "editor/edits/stored_view.h"
@@ -126,6 +127,7 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
   const FuseOptions options = fuse_options(scene, action);
   // Reports unwritable outputs before the long computation.
   check_can_export(action.out, session.document.sources());
+  const OutputState before(action.out);
   if (!action.report.empty()) {
     session.document.sources().check_file(action.report);
     const std::filesystem::path folder = absolute_path(action.report).parent_path();
@@ -145,6 +147,9 @@ void export_plain(Session& session, const Scene& scene, const ExportAction& acti
         session.say(fmt::format("note: pictures cannot be compared here: {}", error.what()));
       },
       report, session.progress, action.picture_size);
+  if (before.has_other_content())
+    throw FileError(action.out,
+                    "was written by something else during the computation, so it is not replaced; choose another name");
   const ExportReport written =
       export_scene(plain, action.out, {options.layout, session.document.sources(), action.page_size}, session.progress);
   session.wrote_scene(action.out, true);

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/camera_mark.h"
@@ -75,7 +76,7 @@ void run(Session& session, const ExportViewsAction& action) {
   write_file_atomically(action.out, format.write(from_y_up(std::move(cameras), action.world.value_or(format.up))),
                         session.document.sources());
   session.outputs.push_back(action.out);
-  session.say(fmt::format("wrote {} views to {}", names.size(), action.out));
+  session.say(fmt::format("wrote {} to {}", counted(names.size(), "view"), action.out));
 }
 
 REBAKE_DESCRIBE_ACTION(

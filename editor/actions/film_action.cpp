@@ -4,8 +4,10 @@
 
 #include <stdlib.h>
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include "editor/actions/describe_action.h"
 #include "editor/actions/lit.h"
@@ -16,6 +18,7 @@
 #include "editor/film/picture_folder.h"
 #include "editor/film/video.h"
 #include "mesh_ops/base/child_process.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
@@ -107,15 +110,16 @@ class Film {
     PictureFolder folder(pictures, video_ ? ".png" : "." + action_.picture, frames_.size(), content(), video_,
                          sources_);
     if (folder.removed() > 0)
-      session_.say(
-          fmt::format("note: {} pictures of an earlier film in {} were replaced", folder.removed(), pictures.string()));
-    std::size_t known = 0;
-    for (std::size_t k = 0; k < frames_.size(); ++k) known += folder.has(k) ? 1 : 0;
+      session_.say(fmt::format("note: {} of an earlier film in {} were replaced", counted(folder.removed(), "picture"),
+                               pictures.string()));
+    std::vector<bool> exists(frames_.size());
+    for (std::size_t k = 0; k < frames_.size(); ++k) exists[k] = folder.has(k);
+    const auto known = static_cast<std::size_t>(std::count(exists.begin(), exists.end(), true));
     if (known > 0) session_.say(fmt::format("note: {} of {} pictures exist already", known, frames_.size()));
     const auto start = Clock::now();
     std::size_t drawn = 0;
     for (std::size_t k = 0; k < frames_.size(); ++k) {
-      if (folder.has(k)) continue;
+      if (exists[k]) continue;
       const double spent = std::chrono::duration<double>(Clock::now() - start).count();
       const std::string left =
           drawn < 3 ? std::string()
@@ -123,6 +127,7 @@ class Film {
                                                              static_cast<double>(frames_.size() - known - drawn)));
       session_.progress.at(fmt::format("picture {} of {}{}", k + 1, frames_.size(), left),
                            static_cast<double>(k) / static_cast<double>(frames_.size()));
+      folder.refuse_foreign(k);  // it may have appeared since
       draw(frames_[k], folder.picture(k));
       ++drawn;
     }
@@ -131,7 +136,7 @@ class Film {
       folder.remove();
     }
     session_.outputs.push_back(action_.out);
-    session_.say(fmt::format("wrote {} pictures ({:.4g} s at {:.4g} per second) to {}", frames_.size(),
+    session_.say(fmt::format("wrote {} ({:.4g} s at {:.4g} per second) to {}", counted(frames_.size(), "picture"),
                              static_cast<double>(frames_.size()) / fps_, fps_, action_.out));
   }
 

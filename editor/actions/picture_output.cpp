@@ -52,14 +52,20 @@ Image render_to_file(Renderer& renderer, const Scene& scene, const View& view, R
                      const SourceGuard& sources) {
   options.transparent = content.transparent;
   if (!content.passes.empty()) {
-    write_passes(render_passes(renderer, scene, view, options, lighting, content.passes), out, content.separate,
-                 sources);
+    const auto passes = render_passes(renderer, scene, view, options, lighting, content.passes);
+    for (const std::filesystem::path& file : files_of(content, out)) refuse_replacing_unnamed(file, out);
+    write_passes(passes, out, content.separate, sources);
     return {};
   }
   Image picture = content.panorama ? render_panorama(renderer, scene, view, options, lighting)
                                    : renderer.render(scene, view, options, lighting);
-  write_picture(picture, out, sources);
+  write_rendered(picture, out, sources);
   return picture;
+}
+
+void write_rendered(const Image& picture, const std::filesystem::path& out, const SourceGuard& sources) {
+  refuse_replacing_unnamed(out, out);
+  write_picture(picture, out, sources);
 }
 
 Image sheet_of_views(Renderer& renderer, const Scene& scene, const View& view, const PixelSize& cells,

@@ -39,11 +39,15 @@ std::vector<std::filesystem::path> files_of(const PictureContent& content, const
 /// Throws FieldError if a file of this name cannot hold the content, or if fields do not go together.
 void check(const PictureContent& content, const std::filesystem::path& out, int width, int height);
 
-/// Renders a picture and writes it. Returns the picture, empty for passes. Throws as write_picture() and
-/// write_passes() do.
+/// Renders a picture and writes it. Returns the picture, empty for passes. Throws as write_picture(), write_passes()
+/// and refuse_replacing_unnamed() do, the last also for files that appeared while it was rendered.
 Image render_to_file(Renderer& renderer, const Scene& scene, const View& view, RenderOptions options,
                      const Lighting* lighting, const PictureContent& content, const std::filesystem::path& out,
                      const SourceGuard& sources);
+
+/// Writes a picture. Throws as write_picture() does, and FileError if the file would replace something else than a
+/// picture that Rebake rendered.
+void write_rendered(const Image& picture, const std::filesystem::path& out, const SourceGuard& sources);
 
 /// A contact sheet of all stored views in natural order, in `cells` columns and rows. `view`: size of each picture and
 /// samples. Throws FieldError if there are no views, or more than cells.

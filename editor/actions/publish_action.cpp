@@ -13,6 +13,7 @@
 #include <map>
 #include <set>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/formats.h"
@@ -57,11 +58,14 @@ bool is_page(const fs::path& file) {
 }
 
 // Throws FileError if someone has changed the files of a page since it was published. `index`: the page itself. Pages
-// of older versions have no hash.
+// of older versions have no hash, so changes of theirs cannot be told.
 void refuse_changed(const fs::path& page, const fs::path& index, const std::set<std::string>& names) {
   std::string text = read_file(index);
   const std::size_t at = text.find(hash_mark);
-  if (at == std::string::npos) return;
+  if (at == std::string::npos)
+    throw FileError(page,
+                    "is a page of an earlier build, or was changed since it was published, so it is not replaced; "
+                    "choose another name, or move it elsewhere");
   const std::string line = text.substr(at, text.find('\n', at) + 1 - at);
   text.erase(at, line.size());
   if (line != hash_line(names, [&](const std::string& name) {
@@ -195,7 +199,7 @@ void run(Session& session, const PublishAction& action) {
     add_hash(page.files);
     commit(page);
     session.outputs.push_back(action.out);
-    session.say(fmt::format("published {}: {} triangles, {:.2f} MB", action.out, page.triangles,
+    session.say(fmt::format("published {}: {}, {:.2f} MB", action.out, counted(page.triangles, "triangle"),
                             static_cast<double>(bytes_of(page)) / 1e6));
     if (!action.single_file) session.say(fmt::format("to preview it: python3 -m http.server -d '{}'", action.out));
     for (const std::string& decision : page.decisions) session.report(decision);

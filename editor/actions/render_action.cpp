@@ -30,7 +30,7 @@ void run(Session& session, const RenderAction& action) {
     if (!action.content.passes.empty() || action.content.panorama || action.content.transparent)
       throw FieldError("sheet", "cannot be combined with passes, panorama or transparent");
     picture = sheet_of_views(session.renderer(), scene, view, *action.sheet, &lighting, session.progress);
-    write_picture(picture, action.out, session.document.sources());
+    write_rendered(picture, action.out, session.document.sources());
   } else {
     picture = render_to_file(session.renderer(), scene, view, {}, &lighting, action.content, action.out,
                              session.document.sources());

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/actions/describe_action.h"
+#include "editor/actions/output_state.h"
 #include "editor/training/training_judgement.h"
 #include "editor/training/training_run.h"
 #include "mesh_ops/base/duration.h"
@@ -158,15 +159,6 @@ std::vector<fs::path> TrainAction::input_files(const nlohmann::json& object) {
                           {text("held_out"), 0});
 }
 
-namespace {
-
-bool has_content(const fs::path& folder) {
-  std::error_code error;
-  return fs::exists(folder, error) && !(fs::is_directory(folder, error) && fs::is_empty(folder, error));
-}
-
-}  // namespace
-
 void run(Session& session, const TrainAction& action, const TrainingObserver& observer) {
   const ReconstructionOptions options = options_of(action);
   check(options);
@@ -176,8 +168,8 @@ void run(Session& session, const TrainAction& action, const TrainingObserver& ob
   check_can_export(action.out, sources_of(session, observer));
   const fs::path out = absolute_path(action.out), work = out.string() + ".training";
   check_report_is_ours(out / report_name);
-  const bool replaces = has_content(out) && observer.may_replace;
-  if (replaces)
+  const OutputState before(out);
+  if (before.had_content() && observer.may_replace)
     session.say(fmt::format("note: {} exists already; its scene is replaced after the training", out.string()));
   Capture capture = read_capture(options.source, options.held_out, Scene{}.background, session.progress);
   for (const std::string& note : capture.notes) session.say(note);
@@ -200,7 +192,7 @@ void run(Session& session, const TrainAction& action, const TrainingObserver& ob
   Scene scene = with_added({}, node, NodeId::none, 0);
   scene.background = training.frame().background;
   const SourceGuard sources = sources_of(session, observer);
-  if (!replaces && has_content(out))
+  if (before.has_other_content() || (before.had_content() && !observer.may_replace))
     throw FileError(out,
                     "was written by something else during the training; move it elsewhere, and train again with "
                     "the same options: the training is kept and goes on from here");

@@ -174,6 +174,8 @@ BatchScenes batch_scenes(const BatchOptions& options) {
     sources.check_file(options.report);
     if (fs::weakly_canonical(options.report) == fs::weakly_canonical(options.script))
       throw FieldError("--report", "is the script itself; choose another file");
+    // Nor may a script write to it.
+    result.protected_paths.emplace_back("", fs::absolute(options.report));
   }
   const auto shards = static_cast<std::uint64_t>(options.shards);
   for (const auto& [name, folder] : by_name)

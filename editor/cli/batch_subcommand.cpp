@@ -9,6 +9,7 @@
 #include "editor/batch/batch_scenes.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 
@@ -56,7 +57,7 @@ void print_table(const std::vector<BatchResult>& results) {
     fmt::print("{:<{}}  {:<8} {:>8.2f}  {}\n", on_one_line(result.name), width, to_string(result.status),
                result.seconds, on_one_line(result.message));
   }
-  fmt::print("{} scenes, {} failed\n", results.size(), failed);
+  fmt::print("{}, {} failed\n", counted(results.size(), "scene"), failed);
 }
 
 // Checks that a report may be written: throws FileError if a file exists that is not an earlier report. Unlinks an

@@ -8,6 +8,7 @@
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
 #include "editor/fields/codec.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/formats/formats.h"
 
 namespace rebake {
@@ -58,7 +59,8 @@ json object_info(const PlacedNode& placed) {
 json scene_info(const Scene& scene) {
   json objects = json::array();
   std::set<const BakedObject*> seen;
-  std::uint64_t sets = 0, chunks = 0, vertices = 0, triangles = 0, texels = 0, memory = 0;
+  SharedTotals shared;
+  std::uint64_t sets = 0, chunks = 0, vertices = 0, triangles = 0;
   Box box;
   json axes, decoder;
   for (const PlacedNode& placed : placed_nodes(scene)) {
@@ -72,9 +74,8 @@ json scene_info(const Scene& scene) {
     if (seen.insert(&object).second) {
       sets += object.sets.size();
       chunks += chunk_count(object);
-      texels += object.opaque_texel_count();
-      memory += object.memory();
     }
+    shared.add(object);
     const json own_axes = Codec<Axes>::write(object.axes), own_decoder = objects.back().at("decoder");
     axes = axes.is_null() || axes == own_axes ? own_axes : json("mixed");
     decoder = decoder.is_null() || decoder == own_decoder ? own_decoder : json("mixed");
@@ -83,10 +84,10 @@ json scene_info(const Scene& scene) {
               {"chunks", chunks},
               {"vertices", vertices},
               {"triangles", triangles},
-              {"opaque_texels", texels},
+              {"opaque_texels", shared.opaque_texels()},
               {"axes", axes},
               {"decoder", decoder},
-              {"memory", memory},
+              {"memory", shared.memory()},
               {"objects", objects},
               {"views", json::array()},
               {"background", list(scene.background)}};
@@ -120,10 +121,11 @@ void print(const json& info) {
     const json &low = o.at("bounds").at("min"), &high = o.at("bounds").at("max");
     fmt::print("{}{}\n", printable(o.at("name").get<std::string>()), o.at("visible").get<bool>() ? "" : "  (hidden)");
     const auto files = o.at("chunks").get<std::size_t>();
-    fmt::print("  layout         {}, {} texture set(s){}\n", format_words(o), o.at("texture_sets").get<std::size_t>(),
-               files > 0 ? fmt::format(", {} geometry file(s)", files) : "");
-    fmt::print("  geometry       {} vertices, {} triangles\n", o.at("vertices").get<std::size_t>(),
-               o.at("triangles").get<std::size_t>());
+    fmt::print("  layout         {}, {}{}\n", format_words(o),
+               counted(o.at("texture_sets").get<std::size_t>(), "texture set"),
+               files > 0 ? ", " + counted(files, "geometry file") : "");
+    fmt::print("  geometry       {} vertices, {}\n", o.at("vertices").get<std::size_t>(),
+               counted(o.at("triangles").get<std::size_t>(), "triangle"));
     std::string sizes;
     for (const json& size : o.at("texture_sizes"))
       sizes += fmt::format("{}{}×{}", sizes.empty() ? "" : ", ", size[0].get<int>(), size[1].get<int>());
@@ -136,8 +138,9 @@ void print(const json& info) {
     fmt::print("  memory         {}\n", megabytes(o.at("memory").get<double>()));
   }
   if (info.at("objects").size() > 1)
-    fmt::print("total            {} triangles, {} opaque texels, {}\n", info.at("triangles").get<std::size_t>(),
-               info.at("opaque_texels").get<std::uint64_t>(), megabytes(info.at("memory").get<double>()));
+    fmt::print("total            {}, {}, {}\n", counted(info.at("triangles").get<std::size_t>(), "triangle"),
+               counted(info.at("opaque_texels").get<std::uint64_t>(), "opaque texel"),
+               megabytes(info.at("memory").get<double>()));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "editor/cli/terminal.h"
 #include "editor/document/replaced_work.h"
 #include "editor/fields/codec.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/photo_names.h"
@@ -191,10 +192,11 @@ void render_photographs(const Rendering& options) {
   const Progress progress = progress_bar();
   for (std::size_t k = 0; k < views.size(); ++k) {
     progress.at("rendering", static_cast<double>(k) / static_cast<double>(views.size()));
+    refuse_replacing_capture(files[k], options.cameras);  // it may have appeared since
     render_to_file(renderer, scene, views[k], options.view.render_options(), &lighting, options.content, files[k],
                    sources);
   }
-  print_message(fmt::format("rendered {} pictures into {}", views.size(), options.out));
+  print_message(fmt::format("rendered {} into {}", counted(views.size(), "picture"), options.out));
 }
 
 // "4x3" as columns and rows.
@@ -216,8 +218,8 @@ Image render_picture(const Rendering& options, Renderer& renderer, const Scene& 
     return render_to_file(renderer, scene, view, how, &lighting, options.content, options.out, sources);
   if (!options.content.passes.empty() || options.content.panorama || options.content.transparent)
     throw FieldError("--sheet", "cannot be combined with --passes, --panorama or --transparent");
-  write_picture(sheet_of_views(renderer, scene, view, cells_of(options.sheet), &lighting, progress_bar(), how),
-                options.out, sources);
+  write_rendered(sheet_of_views(renderer, scene, view, cells_of(options.sheet), &lighting, progress_bar(), how),
+                 options.out, sources);
   return {};
 }
 

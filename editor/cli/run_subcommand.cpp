@@ -103,7 +103,12 @@ void protect_listed(Document& document, const std::filesystem::path& list, const
   const std::string text = read_file(list);
   std::istringstream words{text};
   for (std::string reader, path; std::getline(words, reader, '\0') && std::getline(words, path, '\0');) {
-    if (reader.empty() || reader != scene) document.protect_input(path, "a file that another scene's script reads");
+    if (!reader.empty() && reader == scene) continue;
+    const std::string role = "a file that another scene's script reads, or the report of the batch";
+    if (std::filesystem::exists(path))
+      document.protect_input(path, role);
+    else
+      document.protect_file(path, role);
   }
   document.protect_file(list, "a file of the running batch");
 }

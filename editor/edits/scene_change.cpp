@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/scene/scene.h"
 
 namespace rebake {
@@ -42,9 +43,7 @@ std::size_t moved_between(const BakedObject& before, const BakedObject& after) {
 
 }  // namespace
 
-std::string triangles_text(std::size_t triangles) {
-  return triangles == 1 ? "1 triangle" : fmt::format("{} triangles", triangles);
-}
+std::string triangles_text(std::size_t triangles) { return counted(triangles, "triangle"); }
 
 std::string listed(const std::vector<std::string>& names) {
   if (names.empty()) return "";

@@ -97,7 +97,7 @@ std::vector<fs::path> film_pictures(const fs::path& folder, const nlohmann::json
 }
 
 // Someone may have put a picture of their own under such a name, or retouched one.
-void refuse_foreign(const std::vector<fs::path>& pictures) {
+void refuse_changed(const std::vector<fs::path>& pictures) {
   for (const fs::path& picture : pictures)
     if (std::error_code error; fs::file_size(picture, error) > 0 && !is_rendered_picture(picture))
       throw FileError(picture,
@@ -152,7 +152,7 @@ PictureFolder::PictureFolder(fs::path folder, std::string extension, std::size_t
     lock();
     const nlohmann::json before = record_in(folder_);
     const std::vector<fs::path> pictures = film_pictures(folder_, before);
-    refuse_foreign(pictures);
+    refuse_changed(pictures);
     const bool of_video = before.is_object() && before.value("video", false);
     if (before.is_object() && before.value("content", "") == content) {
       if (replaces && !of_video)
@@ -196,7 +196,7 @@ void PictureFolder::lock() {
 
 void PictureFolder::remove() const {
   const std::vector<fs::path> pictures = film_pictures(folder_, record_in(folder_));
-  refuse_foreign(pictures);
+  refuse_changed(pictures);
   for (const fs::path& picture : pictures) remove_file(picture);
   remove_file(folder_ / record);
   std::error_code error;
@@ -209,6 +209,14 @@ fs::path PictureFolder::pattern() const {
   std::string pattern;
   for (const char c : folder_.string()) pattern += c == '%' ? "%%" : std::string(1, c);
   return fs::path(pattern) / ("%05d" + extension_);
+}
+
+void PictureFolder::refuse_foreign(std::size_t number) const {
+  const fs::path file = picture(number);
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(file, error))) return;
+  if (fs::is_symlink(file, error)) throw FileError(file, "is a link; choose another folder for the film");
+  refuse_changed({file});
 }
 
 bool PictureFolder::has(std::size_t number) const {

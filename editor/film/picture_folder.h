@@ -32,6 +32,8 @@ class PictureFolder {
   std::filesystem::path pattern() const;
   /// Whether a picture of this film exists already and can be decoded.
   bool has(std::size_t number) const;
+  /// Throws FileError if there is a picture of this number that Rebake did not render, or a link.
+  void refuse_foreign(std::size_t number) const;
   std::size_t removed() const { return removed_; }  ///< number of pictures of another film that were removed
 
  private:

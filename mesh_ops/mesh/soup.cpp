@@ -57,13 +57,6 @@ Soup Soup::with_displacement(Attributes::Shared displaced) const {
   return result;
 }
 
-std::uint64_t Soup::memory() const {
-  std::uint64_t bytes = positions_->size() * sizeof(Vec3) + uvs_->size() * sizeof(Vec2) + faces_->size() * sizeof(Face);
-  for (const auto* attributes : {&vertex_attributes_, &face_attributes_})
-    for (const auto& [name, attribute] : *attributes) bytes += attribute->memory();
-  return bytes;
-}
-
 Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted) {
   std::vector<std::uint8_t> used(soup.positions().size(), 0);
   std::vector<Face> faces;

@@ -57,7 +57,6 @@ class Soup {
   std::size_t triangle_count() const { return faces_->size(); }
   /// Bounding box of the vertices used by faces; empty without faces.
   const Box& bounds() const { return bounds_; }
-  std::uint64_t memory() const;  ///< bytes
 
  private:
   friend Soup subset(const Soup& soup, const std::vector<std::uint8_t>& keep, std::size_t first_flag, bool wanted);

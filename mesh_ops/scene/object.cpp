@@ -36,13 +36,29 @@ bool BakedObject::any_rotations() const {
 }
 
 std::uint64_t BakedObject::memory() const {
-  std::set<const FeatureTexture*> seen;
-  std::uint64_t total = 0;
-  for (const TextureSet& set : sets) {
-    total += set.soup.memory();
-    if (seen.insert(set.texels.get()).second) total += set.texels->memory();
+  SharedTotals totals;
+  totals.add(*this);
+  return totals.memory();
+}
+
+void SharedTotals::add(const BakedObject& object) {
+  const auto count = [&](const void* data, std::uint64_t bytes) {
+    if (seen_.insert(data).second) memory_ += bytes;
+  };
+  for (const TextureSet& set : object.sets) {
+    const Soup& soup = set.soup;
+    count(soup.shared_positions().get(), soup.positions().size() * sizeof(Vec3));
+    count(soup.shared_uvs().get(), soup.uvs().size() * sizeof(Vec2));
+    count(soup.shared_faces().get(), soup.faces().size() * sizeof(Face));
+    for (const Attributes* attributes : {&soup.vertex_attributes(), &soup.face_attributes()})
+      for (const auto& [name, attribute] : *attributes) count(attribute.get(), attribute->memory());
+    const FeatureTexture& texels = *set.texels;
+    if (!seen_.insert(&texels).second) continue;
+    opaque_texels_ += texels.opaque_count();
+    for (int row = 0; row < texels.tile_rows(); ++row)
+      for (int column = 0; column < texels.tile_columns(); ++column)
+        count(texels.tile(column, row).get(), texels.tile(column, row)->memory());
   }
-  return total;
 }
 
 std::vector<BakedBody> bodies_of(const BakedObject& object) {

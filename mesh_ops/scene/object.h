@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -106,7 +107,19 @@ struct BakedObject {
   std::uint64_t opaque_texel_count() const;
   Box bounds() const;
   bool any_rotations() const;    ///< whether edits rotated any vertex
-  std::uint64_t memory() const;  ///< bytes; a texture shared by several sets counts once
+  std::uint64_t memory() const;  ///< bytes; data shared by several sets count once
+};
+
+/// Sums over objects, in which data that several of them share count once.
+class SharedTotals {
+ public:
+  void add(const BakedObject& object);
+  std::uint64_t opaque_texels() const { return opaque_texels_; }  ///< of all textures
+  std::uint64_t memory() const { return memory_; }                ///< bytes of geometry and texels
+
+ private:
+  std::set<const void*> seen_;
+  std::uint64_t opaque_texels_ = 0, memory_ = 0;
 };
 
 /// The object's bodies; the object itself if its geometry is as baked.

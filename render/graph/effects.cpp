@@ -1,4 +1,5 @@
 #include "render/graph/effects.h"
+#include "mesh_ops/base/counted.h"
 
 #include <fmt/format.h>
 
@@ -20,13 +21,8 @@ constexpr const Effect* table[] = {
 
 std::span<const Effect* const> effect_table() { return table; }
 
-std::string plural(std::size_t count, const std::string& one, const std::string& many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
-}
-
 std::string describe_draws(const FramePlan& plan) {
-  return fmt::format("{}, {}", plural(plan.draws.size(), "draw", "draws"),
-                     plural(plan.triangles, "triangle", "triangles"));
+  return fmt::format("{}, {}", counted(plan.draws.size(), "draw"), counted(plan.triangles, "triangle"));
 }
 
 std::string describe_decoder(const FramePlan& plan) {

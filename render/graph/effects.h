@@ -74,8 +74,6 @@ extern const Effect geometry, supersampling, view_direction, node_frames, rotate
 /// All effects, in the order in which they are listed and run.
 std::span<const Effect* const> effect_table();
 
-/// A count with its noun: "3 draws".
-std::string plural(std::size_t count, const std::string& one, const std::string& many);
 /// Size of a plan in words: "3 draws, 1200 triangles".
 std::string describe_draws(const FramePlan& plan);
 /// The first decoder in words: "decoder 11-16-16-3, weights as constants". Requires a draw.

@@ -1,3 +1,4 @@
+#include "mesh_ops/base/counted.h"
 #include "render/graph/effects.h"
 
 namespace rebake {
@@ -7,7 +8,7 @@ namespace {
 std::optional<Decision> decide(const FrameFacts& facts) {
   const std::string in_object = "clusters of triangles out of view are culled";
   if (facts.culled > 0)
-    return Decision{true, plural(facts.culled, "object is", "objects are") + " out of view and not drawn" +
+    return Decision{true, counted(facts.culled, "object is", "objects are") + " out of view and not drawn" +
                               (facts.any_draw() ? "; of the others, " + in_object : "")};
   if (facts.any_draw()) return Decision{true, in_object};
   return Decision{false, "no object is shown"};
@@ -15,7 +16,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
 
 std::optional<Decision> decide_hidden(const FrameFacts& facts) {
   if (facts.hidden == 0) return std::nullopt;
-  return Decision{false, plural(facts.hidden, "is", "are") + " hidden by an edit"};
+  return Decision{false, counted(facts.hidden, "is", "are") + " hidden by an edit"};
 }
 
 }  // namespace

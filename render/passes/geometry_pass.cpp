@@ -1,6 +1,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include "mesh_ops/base/counted.h"
 #include "render/passes/occlusion.h"
 
 namespace rebake {
@@ -82,7 +83,7 @@ std::optional<Decision> decide_rotated_rays(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   if (!facts.plan.uses_view_direction) return Decision{false, "no decoder in view depends on the view direction"};
   if (facts.rotated_draws == 0) return Decision{false, "no triangle was rotated relative to its object"};
-  return Decision{true, plural(facts.rotated_draws, "draw has", "draws have") + " rotated triangles"};
+  return Decision{true, counted(facts.rotated_draws, "draw has", "draws have") + " rotated triangles"};
 }
 
 constexpr Use writes[] = {{Target::features},

@@ -1,5 +1,6 @@
 #include <epoxy/gl.h>
 
+#include "mesh_ops/base/counted.h"
 #include "render/passes/pass_support.h"
 
 namespace rebake {
@@ -67,8 +68,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
   const Guides& guides = facts.plan.guides;
   const std::size_t lines = guides.lines.size(), triangles = guides.triangles ? guides.triangles->size() : 0;
   if (lines + triangles == 0) return Decision{false, "no grid, cage or handle is shown"};
-  return Decision{
-      true, plural(lines, "line", "lines") + (triangles > 0 ? ", " + plural(triangles, "triangle", "triangles") : "")};
+  return Decision{true, counted(lines, "line") + (triangles > 0 ? ", " + counted(triangles, "triangle") : "")};
 }
 
 constexpr Use reads[] = {{Target::depth}};

@@ -1,3 +1,4 @@
+#include "mesh_ops/base/counted.h"
 #include "render/passes/pass_support.h"
 
 namespace rebake {
@@ -17,14 +18,14 @@ std::optional<Decision> decide(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   const std::size_t lit = lit_draws(facts.plan);
   if (lit == 0) return Decision{false, "no light changes in view"};
-  return Decision{true, "light changes in " + plural(lit, "draw", "draws")};
+  return Decision{true, "light changes in " + counted(lit, "draw")};
 }
 
 std::optional<Decision> decide_offset(const FrameFacts& facts) {
   if (!facts.any_draw() || lit_draws(facts.plan) == 0) return std::nullopt;
   const std::size_t dark = lit_draws(facts.plan, [](const LightMap&map) { return !map.offset.empty(); }),
                     glossy = lit_draws(facts.plan, [](const LightMap&map) { return map.gloss != nullptr; });
-  if (dark > 0) return Decision{true, "surfaces baked in the dark are lit in " + plural(dark, "draw", "draws")};
+  if (dark > 0) return Decision{true, "surfaces baked in the dark are lit in " + counted(dark, "draw")};
   if (glossy > 0) return Decision{true, "highlights need an additive term"};
   return Decision{false, "gains suffice: nothing was baked in the dark"};
 }
@@ -33,7 +34,7 @@ std::optional<Decision> decide_highlights(const FrameFacts& facts) {
   if (!facts.any_draw() || lit_draws(facts.plan) == 0) return std::nullopt;
   const std::size_t glossy = lit_draws(facts.plan, [](const LightMap& map) { return map.gloss != nullptr; });
   if (glossy == 0) return Decision{false, "no rotated surface is specular"};
-  return Decision{true, "specular reflections rotate in " + plural(glossy, "draw", "draws")};
+  return Decision{true, "specular reflections rotate in " + counted(glossy, "draw")};
 }
 
 }  // namespace

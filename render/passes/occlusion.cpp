@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 
+#include "mesh_ops/base/counted.h"
 #include "render/passes/depth_pyramid.h"
 #include "render/passes/screen_bounds.h"
 
@@ -464,13 +465,12 @@ std::optional<Decision> decide(const FrameFacts& facts) {
   if (plan.kept) return Decision{false, "only changed pixels are drawn"};
   if (plan.options.occlusion == Occlusion::automatic) {
     if (plan.triangles < facts.device.min_culling_triangles)
-      return Decision{false,
-                      fmt::format("{}: drawing is faster than testing; culling pays from {} on this device",
-                                  plural(plan.triangles, "triangle", "triangles"), facts.device.min_culling_triangles)};
+      return Decision{false, fmt::format("{}: drawing is faster than testing; culling pays from {} on this device",
+                                         counted(plan.triangles, "triangle"), facts.device.min_culling_triangles)};
     // The overhead per set is as large as the time to draw a few triangles.
     if (plan.triangles < max_faces_per_cluster * plan.draws.size())
       return Decision{false, fmt::format("{} with few triangles each: drawing is faster than testing",
-                                         plural(plan.draws.size(), "object", "objects"))};
+                                         counted(plan.draws.size(), "object"))};
     if (facts.device.visible_share > 0)
       return Decision{false, fmt::format("in the last test, {:.0f} % of the triangles in view were visible",
                                          100 * facts.device.visible_share)};

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "mesh_ops/base/counted.h"
 #include "render/passes/pass_support.h"
 
 namespace rebake {
@@ -25,7 +26,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
       std::count_if(plan.draws.begin(), plan.draws.end(), [&](const Draw& draw) { return outlined(plan, draw); }));
   if (plan.guides.outlined.empty()) return Decision{false, "no node is picked"};
   if (drawn == 0) return Decision{false, "no picked node is in view"};
-  return Decision{true, plural(drawn, "draw is", "draws are") + " of picked nodes"};
+  return Decision{true, counted(drawn, "draw is", "draws are") + " of picked nodes"};
 }
 
 constexpr Use reads[] = {{Target::depth}, {Target::mask}};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh_ops/base/counted.h"
 #include "render/passes/pass_support.h"
 
 namespace rebake {
@@ -61,7 +62,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
       std::count_if(plan.draws.begin(), plan.draws.end(), [](const Draw& draw) { return draw.selection != nullptr; }));
   if (!plan.guides.selection) return Decision{false, "selections are hidden"};
   if (selected == 0) return Decision{false, "nothing in view is selected"};
-  return Decision{true, plural(selected, "draw has", "draws have") + " selected triangles"};
+  return Decision{true, counted(selected, "draw has", "draws have") + " selected triangles"};
 }
 
 constexpr Use reads[] = {{Target::depth}, {Target::mask}};

@@ -40,16 +40,22 @@ Outcome apply(const Scene& scene, const CageDeform& edit, const Progress& progre
 
 namespace {
 
+bool translates_only(const CageMove& move) {
+  return move.rotate.quaternion().isApprox(Eigen::Quaterniond::Identity(), 0) && move.scale.value == Vec3::Ones();
+}
+
 // Number of cage points whose translation differs from that in `replaced` (if not null). 0 if an edit does not list its
-// points by number.
+// points by number, moves one of them twice, or rotates or scales them.
 std::size_t moved_points(const CageDeform& edit, const CageDeform* replaced) {
   std::map<std::uint64_t, Vec3> motions, known;
   const auto collect = [](const CageDeform& from, std::map<std::uint64_t, Vec3>& into) {
     for (const CageMove& move : from.moves) {
-      if (move.points.ranges.empty()) return false;
+      if (move.points.ranges.empty() || !translates_only(move)) return false;
       for (const auto& [first, last] : move.points.ranges)
-        for (std::uint64_t k = first; k <= last; ++k) into[k] = move.translate;
+        for (std::uint64_t k = first; k <= last; ++k)
+          if (!into.emplace(k, move.translate).second) return false;
     }
+    std::erase_if(into, [](const auto& motion) { return motion.second.isZero(0); });
     return true;
   };
   if (!collect(edit, motions) || (replaced != nullptr && !collect(*replaced, known))) return 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
@@ -47,7 +48,7 @@ Outcome apply(const Scene& scene, const ImportViews& edit) {
     replaced += added ? 0 : 1;
   }
   for (std::string& line : report.lines) line = fmt::format("warning: {}: {}", edit.path, line);
-  report.lines.push_back(fmt::format("stored {} views", views.size()) +
+  report.lines.push_back(fmt::format("stored {}", counted(views.size(), "view")) +
                          (replaced > 0 ? fmt::format(", of which {} replaced views of the same name", replaced) : ""));
   return {std::move(result), std::move(report)};
 }

@@ -4,6 +4,7 @@
 
 #include "editor/edits/describe_edit.h"
 #include "editor/edits/scene_change.h"
+#include "mesh_ops/base/counted.h"
 
 namespace rebake {
 
@@ -24,7 +25,7 @@ Outcome apply(const Scene& scene, const DeleteSelected& edit) {
   std::size_t left = 0;
   for (const PlacedNode& placed : placed_nodes(result))
     if (placed.node->object) left += placed.node->object->triangle_count();
-  return {std::move(result), {{fmt::format("{} triangles removed, {} left", removed, left)}}};
+  return {std::move(result), {{fmt::format("{} removed, {} left", counted(removed, "triangle"), left)}}};
 }
 
 std::string change_title(const DeleteSelected&, const SceneChange& change, const DeleteSelected*) {

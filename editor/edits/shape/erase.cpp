@@ -5,6 +5,7 @@
 #include "editor/edits/describe_edit.h"
 #include "editor/edits/scene_change.h"
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/features/atlas/erase_texels.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/select/regions.h"
@@ -26,10 +27,12 @@ Outcome erased(const Scene& scene, const std::vector<PlacedNode>& targets,
                           [&](Node& node) { node.object = with_sets(*node.object, std::move(change.sets)); });
   }
   if (texels == 0) throw EditError("the region contains no opaque texel, so nothing was erased");
-  std::uint64_t left = 0;
+  SharedTotals left;
   for (const PlacedNode& placed : placed_nodes(result))
-    if (placed.node->object) left += placed.node->object->opaque_texel_count();
-  return {std::move(result), {{fmt::format("{} texels cleared, {} opaque ones left", texels, left)}}};
+    if (placed.node->object) left.add(*placed.node->object);
+  return {
+      std::move(result),
+      {{fmt::format("{} cleared, {} left", counted(texels, "texel"), counted(left.opaque_texels(), "opaque one"))}}};
 }
 
 std::vector<PlacedNode> targets_of(const Scene& scene, const Erase& edit) {

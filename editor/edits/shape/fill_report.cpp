@@ -4,21 +4,27 @@
 
 #include <algorithm>
 
+#include "editor/edits/scene_change.h"
+#include "mesh_ops/base/counted.h"
+
 namespace rebake {
 
 void report_filling(const std::string& node, const FilledHoles& filled, Report& report) {
-  report.lines.push_back(
-      fmt::format("\"{}\": {}{} holes closed with {} triangles of area {:.4g} and {} texels; colours at the border "
-                  "differ by {:.1f} of "
-                  "255 (root mean square) from those that continue",
-                  node, filled.removed > 0 ? fmt::format("{} triangles removed; ", filled.removed) : "", filled.holes,
-                  filled.triangles, filled.area, filled.texels, 255 * filled.color_step));
+  report.lines.push_back(fmt::format(
+      "\"{}\": {}{} closed with {} of area {:.4g} and {}; colours at the border "
+      "differ by {:.1f} of "
+      "255 (root mean square) from those that continue",
+      node, filled.removed > 0 ? triangles_text(filled.removed) + " removed; " : "", counted(filled.holes, "hole"),
+      triangles_text(filled.triangles), filled.area, counted(filled.texels, "texel"), 255 * filled.color_step));
   if (filled.open_edges > 0)
-    report.lines.push_back(
-        fmt::format("note: {} edges of the border form no closed loop and stay open", filled.open_edges));
-  if (filled.unfilled > 0)
-    report.lines.push_back(
-        fmt::format("note: {} holes stay open: their borders cross themselves, or are too long", filled.unfilled));
+    report.lines.push_back(fmt::format("note: \"{}\": {} of the border form no closed loop and stay open", node,
+                                       counted(filled.open_edges, "edge")));
+  if (filled.unfilled > 0) report.lines.push_back(unfilled_words(node, filled.unfilled));
+}
+
+std::string unfilled_words(const std::string& node, std::size_t holes) {
+  return fmt::format("note: \"{}\": {} open: their borders cross themselves, or are too long", node,
+                     counted(holes, "hole stays", "holes stay"));
 }
 
 void set_filled(Node& node, const FilledHoles& filled) {

@@ -9,6 +9,7 @@
 
 #include "editor/edits/describe_edit.h"
 #include "editor/edits/select/selecting.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
@@ -126,9 +127,11 @@ Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
     if (const auto changed = fit.objects.find(target.placed.node->id); changed != fit.objects.end())
       result = with_changed(result, target.placed.node->id, [&](Node& node) { node.object = changed->second; });
   report.lines.push_back(fmt::format(
-      "fitted {} texels to {} photographs: root mean square error {:.1f} of 255 before, {:.1f} after{}", fit.seen,
-      photographs.size(), 255 * fit.before, 255 * fit.after,
-      fit.unseen > 0 ? fmt::format("; {} texels are in no photograph and keep their colours", fit.unseen) : ""));
+      "fitted {} to {}: root mean square error {:.1f} of 255 before, {:.1f} after{}", counted(fit.seen, "texel"),
+      counted(photographs.size(), "photograph"), 255 * fit.before, 255 * fit.after,
+      fit.unseen > 0
+          ? fmt::format("; {} in no photograph (colours kept)", counted(fit.unseen, "texel is", "texels are"))
+          : ""));
   if (fit.after > fit.before)
     report.lines.emplace_back("warning: the error grew: undo this, or fit with more epochs, or without the decoder");
   return {std::move(result), std::move(report)};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -12,6 +13,7 @@
 #include "editor/edits/scene_change.h"
 #include "editor/edits/select/selecting.h"
 #include "editor/edits/stored_view.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/features/atlas/atlas.h"
 #include "mesh_ops/features/atlas/near_duplicates.h"
 #include "mesh_ops/features/atlas/slimming.h"
@@ -128,20 +130,23 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
       duplicates == 0 ? std::make_shared<const BakedObject>(before) : triangles_of(before, result.dropped, false);
   // Eyes all around the object do not depend on its placement.
   const bool around = !edit.eyes && cameras.empty();
-  TriangleSet unseen(single->triangle_count(), 1);
+  TriangleSet unseen(single->triangle_count(), 1), seen_more(single->triangle_count(), 0);
   std::uint64_t rays = 0;
-  int rays_each = 0;
+  int rays_each = std::numeric_limits<int>::max();  // of the placement with the fewest: its bound is the widest
   double opening = 1;
-  std::size_t once = 0;
   for (const PlacedNode& placed : placements) {
     const VisibilityReport seen = traced_visibility(*single, eyes_for(placed, cameras, edit), edit.rays, progress);
-    for (std::size_t f = 0; f < unseen.size(); ++f) unseen[f] &= seen.unseen[f];
+    for (std::size_t f = 0; f < unseen.size(); ++f) {
+      // Rays of two placements are more than one.
+      seen_more[f] |= seen.unseen[f] == 0 && (seen.seen_once[f] == 0 || unseen[f] == 0) ? 1 : 0;
+      unseen[f] &= seen.unseen[f];
+    }
     rays += seen.rays;
-    rays_each = std::max(rays_each, seen.rays_each);
+    rays_each = std::min(rays_each, seen.rays_each);
     opening = std::min(opening, seen.smallest_opening);
-    once += seen.seen_once;
     if (around) break;
   }
+  const std::size_t once = unseen.size() - count(unseen) - count(seen_more);
   if (count(unseen) == unseen.size()) {
     result.fully_transparent = opaque_texels(before) == 0;
     return result;
@@ -180,17 +185,18 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
     result.lines.emplace_back(
         "note: visibility was computed at rest; keyframed bends may show triangles that were removed");
   result.lines.push_back(
-      fmt::format("{} of {} triangles removed ({} unseen, {} duplicates), opaque texels {} → {}, {:.2f} → "
+      fmt::format("{} of {} removed{} ({} unseen, {} duplicates), opaque texels {} → {}, {:.2f} → "
                   "{:.2f} million texels in total",
-                  removed + duplicates, all, removed, duplicates, opaque_texels(before), opaque_texels(*made),
+                  removed + duplicates, triangles_text(all), placements.size() > 1 ? " in each" : "", removed,
+                  duplicates, opaque_texels(before), opaque_texels(*made),
                   static_cast<double>(texel_area(before)) / 1e6, static_cast<double>(texel_area(*made)) / 1e6));
   if (removed > 0)
     result.lines.push_back(fmt::format(
         "{} rays, {} from each removed triangle with opaque texels: at most {:.2g} % of the lines of sight to any of "
         "them "
-        "are unoccluded (95 % confidence); smallest visible share found {:.2g} %; {} triangles were reached by one ray "
-        "only",
-        rays, rays_each, 100 * missed_share_bound(removed, rays_each), 100 * opening, once));
+        "are unoccluded (95 % confidence); smallest visible share found {:.2g} %; {} reached by one ray only",
+        rays, rays_each, 100 * missed_share_bound(removed, rays_each), 100 * opening,
+        counted(once, "triangle was", "triangles were")));
   if (edit.psnr > 0) result.lines.push_back(loss_words(loss));
   // If nothing changed, the object stays shared.
   result.object = changed ? made : placements.front().node->object;
@@ -227,7 +233,8 @@ Outcome apply(const Scene& scene, const Slim& edit, const Progress& progress) {
     const std::string& first = group.front().node->name;
     const std::string name = group.size() == 1
                                  ? fmt::format("\"{}\"", first)
-                                 : fmt::format("\"{}\" and {} nodes that share its object", first, group.size() - 1);
+                                 : fmt::format("\"{}\" and {} its object", first,
+                                               counted(group.size() - 1, "node that shares", "nodes that share"));
     if (!slimmed.object) {
       const std::string why =
           slimmed.fully_transparent ? "has no opaque texel, so it can be removed" : "is not visible from there";

@@ -129,9 +129,9 @@ void FileDialog::perform_action(EditorContext& editor, const fs::path& path) {
         open_paths(editor, {path.string()});
       break;
     case FileDialogPurpose::save_project:
-      // Replacing another project was confirmed.
-      editor.project.save(path, is_same_file(path, editor.project.path) ? Document::OtherProject::keep_more
-                                                                        : Document::OtherProject::replace);
+      editor.project.save(path, replacing_ == path && !is_same_file(path, editor.project.path)
+                                    ? Document::OtherProject::replace
+                                    : Document::OtherProject::keep_more);
       break;
     case FileDialogPurpose::save_scene:
       editor.project.save_scene(path);

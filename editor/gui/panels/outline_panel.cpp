@@ -14,6 +14,7 @@
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/icons.h"
 #include "editor/gui/ui/widgets.h"
+#include "mesh_ops/base/counted.h"
 
 namespace rebake {
 
@@ -107,9 +108,10 @@ void OutlinerPanel::draw_selectable(ToolContext& editor, DialogState& dialogs, c
   announce::item("name");
   if (node.object)
     ui::tip(node.name, "",
-            fmt::format("{} triangles, {} opaque texels, {:.1f} MB. Click to pick, double-click to rename, right-click "
+            fmt::format("{}, {}, {:.1f} MB. Click to pick, double-click to rename, right-click "
                         "for more.",
-                        node.object->triangle_count(), node.object->opaque_texel_count(),
+                        counted(node.object->triangle_count(), "triangle"),
+                        counted(node.object->opaque_texel_count(), "opaque texel"),
                         static_cast<double>(node.object->memory()) / 1e6));
   if (clicked && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
     renaming_ = node.id;
@@ -241,7 +243,7 @@ void OutlinerPanel::draw(ToolContext& editor, DialogState& dialogs) {
   }
   ImGui::EndTable();
   const std::string selected = editor.selected_words();
-  const std::string all = fmt::format("{} triangles{}{}", triangles, selected.empty() ? "" : ", ", selected);
+  const std::string all = fmt::format("{}{}{}", counted(triangles, "triangle"), selected.empty() ? "" : ", ", selected);
   ImGui::TextDisabled("%s", ui::shortened(all, ImGui::GetContentRegionAvail().x).c_str());
 }
 

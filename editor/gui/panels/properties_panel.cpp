@@ -12,6 +12,7 @@
 #include "editor/gui/ui/announce.h"
 #include "editor/gui/ui/number_field.h"
 #include "editor/gui/ui/widgets.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/polar.h"
 
 namespace rebake {
@@ -28,7 +29,7 @@ Vec3 shown(const Vec3& value, double size) {
 
 std::string rows_of(const DocumentEditor& editor) {
   std::size_t triangles = 0, sets = 0;
-  std::uint64_t bytes = 0;
+  SharedTotals shared;
   bool bent = false;
   // Of the picked nodes and those inside them, each once.
   std::set<NodeId> inside(editor.active.begin(), editor.active.end());
@@ -39,12 +40,12 @@ std::string rows_of(const DocumentEditor& editor) {
     if (!one->object) continue;
     triangles += one->object->triangle_count();
     sets += one->object->sets.size();
-    bytes += one->object->memory();
+    shared.add(*one->object);
     bent = bent || one->object->any_rotations();
   }
   if (sets == 0) return "";
-  return fmt::format("{} triangles in {} texture set{}, {:.1f} MB{}", triangles, sets, sets == 1 ? "" : "s",
-                     static_cast<double>(bytes) / 1e6,
+  return fmt::format("{} in {}, {:.1f} MB{}", counted(triangles, "triangle"), counted(sets, "texture set"),
+                     static_cast<double>(shared.memory()) / 1e6,
                      bent ? ". Deformed: view directions rotate with the triangles." : "");
 }
 

@@ -6,6 +6,7 @@
 #include "editor/document/replaced_work.h"
 #include "editor/film/video.h"
 #include "editor/gui/state/settings.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "render/image.h"
@@ -18,21 +19,23 @@ namespace {
 
 std::string name_of(std::size_t picture) { return fmt::format("{:03}.png", picture); }
 
-// Throws FileError if one of the pictures would replace anything but a picture of an earlier animation.
+// Throws FileError if the picture would replace anything but a picture of an earlier animation, or count as a film's.
+void refuse_other_picture(const fs::path& picture) {
+  refuse_replacing_work(picture);
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(picture, error))) return;
+  if (fs::is_symlink(picture, error) || !is_rendered_picture(picture))
+    throw FileError(picture,
+                    "exists and was not rendered by Rebake, was changed since, is of an earlier build, or is a link; "
+                    "choose a new folder");
+  refuse_replacing_captured(picture);
+}
+
 void refuse_other_pictures(const fs::path& folder, std::size_t count) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error))
     throw FileError(folder, "is a file; name a folder, or a .mp4 file");
-  for (std::size_t k = 0; k < count; ++k) {
-    const fs::path picture = folder / name_of(k);
-    if (!fs::exists(fs::symlink_status(picture, error))) continue;
-    if (fs::is_symlink(picture, error) || !is_rendered_picture(picture))
-      throw FileError(picture,
-                      "exists and was not rendered by Rebake, was changed since, is of an earlier build, or is a link; "
-                      "choose a new folder");
-    refuse_replacing_work(picture);
-    refuse_replacing_captured(picture);
-  }
+  for (std::size_t k = 0; k < count; ++k) refuse_other_picture(folder / name_of(k));
 }
 
 }  // namespace
@@ -75,9 +78,10 @@ std::string CameraAnimation::run_step(const std::function<void(const Camera&, co
                                       const SourceGuard& sources) {
   const fs::path partial = pictures_ / "video.mp4";
   if (next_ < cameras_.size()) {
+    if (!video()) refuse_other_picture(pictures_ / name_of(next_));  // it may have appeared since
     write(cameras_[next_], pictures_ / name_of(next_));
     if (++next_ < cameras_.size()) return "";
-    if (!video()) return fmt::format("Wrote {} pictures to {}", cameras_.size(), out_.string());
+    if (!video()) return fmt::format("Wrote {} to {}", counted(cameras_.size(), "picture"), out_.string());
     encoder_ = std::make_unique<ChildProcess>(
         encoder_command({pictures_ / "%03d.png", cameras_.size(), rate, "", false, partial}));
     return "";

@@ -175,12 +175,17 @@ void DocumentEditor::edits_if_changing(const std::vector<Edit>& list) {
   const auto unchanged = std::make_shared<std::string>();
   const auto job = [list, unchanged](Session& session) {
     const AppliedEdits made = apply_edits(session.scene(), list, session.progress);
-    if (made.scenes.back().roots != session.scene().roots) {
-      session.edits(list, &made);
-      return;
+    std::vector<Edit> changing;
+    for (std::size_t k = 0; k < list.size(); ++k) {
+      if (made.scenes[k].roots != (k == 0 ? session.scene() : made.scenes[k - 1]).roots) {
+        changing.push_back(list[k]);
+        continue;
+      }
+      for (const std::string& line : made.reports[k].lines) *unchanged += (unchanged->empty() ? "" : "; ") + line;
     }
-    for (const Report& report : made.reports)
-      for (const std::string& line : report.lines) *unchanged += (unchanged->empty() ? "" : "; ") + line;
+    if (changing.empty()) return;
+    if (!unchanged->empty()) session.say(std::exchange(*unchanged, ""));
+    session.edits(changing, changing.size() == list.size() ? &made : nullptr);
   };
   change(list.front().type().op, job,
          [this, unchanged] {
@@ -445,19 +450,29 @@ std::vector<DeformTarget> DocumentEditor::deform_targets() const {
       targets.back().selection = true;
     }
   if (!targets.empty()) return targets;
-  for (const PlacedNode& placed : placed_nodes(scene()))
-    if (in_scope(placed)) {
-      targets.emplace_back();
-      targets.back().node = NodeRef{placed.node->id};
-      break;
-    }
+  std::map<NodeId, NodeId> top_of;  // picked nodes, or roots, of the nodes inside them
+  for (const PlacedNode& placed : placed_nodes(scene())) {
+    const NodeId id = placed.node->id;
+    if (!top_of.contains(id) && !active.empty() && !active.contains(id)) continue;
+    const NodeId top = top_of.try_emplace(id, id).first->second;
+    for (const NodePtr& child : placed.node->children) top_of[child->id] = top;
+    if (!placed.node->object || !placed.visible || placed.locked) continue;
+    if (!targets.empty() && targets.back().node->id == top) continue;
+    targets.emplace_back();
+    targets.back().node = NodeRef{top};
+  }
+  // Which of several nodes is meant, nobody has said.
+  if (active.empty() && targets.size() > 1) targets.clear();
   return targets;
 }
 
 std::optional<DeformTarget> DocumentEditor::one_deform_target() {
   const std::vector<DeformTarget> targets = deform_targets();
   if (targets.empty()) {
-    say_why_nothing(false);
+    if (active.empty() && nodes_in_scope().size() > 1)
+      messages.say("There are several objects. Pick the one to deform, or select triangles.");
+    else
+      say_why_nothing(false);
     return std::nullopt;
   }
   if (targets.size() == 1) return targets.front();
@@ -477,13 +492,16 @@ std::optional<DeformTarget> DocumentEditor::one_deform_target() {
 std::set<NodeId> DocumentEditor::deform_nodes() const {
   std::set<NodeId> nodes;
   for (const DeformTarget& target : deform_targets()) {
-    if (target.node) {
+    if (target.node && target.selection) {
       nodes.insert(target.node->id);
       continue;
     }
-    for (const PlacedNode& placed : placed_nodes(scene()))
-      if (placed.visible && !placed.locked && placed.node->selection && count(*placed.node->selection) > 0)
-        nodes.insert(placed.node->id);
+    for (const PlacedNode& placed : placed_nodes(scene())) {
+      const Node& node = *placed.node;
+      if (!node.object || !placed.visible || placed.locked) continue;
+      if (target.node ? is_picked({target.node->id}, scene(), node.id) : node.selection && count(*node.selection) > 0)
+        nodes.insert(node.id);
+    }
   }
   return nodes;
 }

@@ -16,6 +16,7 @@
 #include "editor/gui/platform/default_program.h"
 #include "editor/script/script.h"
 #include "editor/script/script_inputs.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/files.h"
 
 namespace rebake {
@@ -167,7 +168,7 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
         // A job that ran when the user asked may have changed the document since.
         const std::string kept =
             replace_document(session, std::move(recovered.document), was_unsaved || !same_work(session.scene(), asked));
-        std::string said = fmt::format("{} edits recovered", recovered.edits);
+        std::string said = counted(recovered.edits, "edit") + " recovered";
         if (!kept.empty()) said += "; " + kept;
         if (!missing.empty()) said += "; " + missing;
         if (recovered.torn) said += "; the last edit was incomplete when the editor ended and is lost";

@@ -1,5 +1,7 @@
 #include "editor/gui/state/settings.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -86,10 +88,27 @@ Settings read_settings(const fs::path& file, std::string& problem) {
     settings.window_height = std::clamp(settings.window_height, 400, 16384);
     return settings;
   } catch (const std::exception& error) {
-    problem = file.string() + ": cannot be read, so default settings are used: " + error.what();
+    problem = fmt::format(
+        "{}: cannot be read, so default settings are used ({}). Correct it now, or later as {}.unreadable, "
+        "to which it is renamed when settings change",
+        file.string(), error.what(), file.filename().string());
     return {};
   }
 }
+
+namespace {
+
+// Renames a file that people may have edited and that cannot be read, so that it is not lost.
+void keep_unreadable(const fs::path& file) {
+  std::string problem;
+  read_settings(file, problem);
+  if (problem.empty()) return;
+  fs::path kept = file.string() + ".unreadable";
+  for (int k = 2; fs::exists(fs::symlink_status(kept)); ++k) kept = fmt::format("{}.unreadable-{}", file.string(), k);
+  fs::rename(file, kept);
+}
+
+}  // namespace
 
 void write_settings(const Settings& settings, const fs::path& file) {
   json object;
@@ -97,6 +116,11 @@ void write_settings(const Settings& settings, const fs::path& file) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error) throw FileError(file.parent_path(), "cannot be created: " + error.message());
+  try {
+    keep_unreadable(file);
+  } catch (const fs::filesystem_error& failed) {
+    throw FileError(file, std::string("cannot be read, nor renamed: ") + failed.code().message());
+  }
   write_file_atomically(file, object.dump(1) + "\n", {});
 }
 

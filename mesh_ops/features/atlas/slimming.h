@@ -20,12 +20,12 @@ struct EyeRegion {
 /// Visibility of triangles, from rays between random opaque texels and random eyes.
 struct VisibilityReport {
   TriangleSet unseen;      ///< triangles that no ray reached
+  TriangleSet seen_once;   ///< triangles that a single ray reached
   int rays_each = 0;       ///< rays per unseen triangle
   std::uint64_t rays = 0;  ///< total number of rays
   /// Smallest share of unoccluded rays among the visible triangles: the narrowest opening that was found. 1 if no
   /// triangle is visible.
   double smallest_opening = 1;
-  std::size_t seen_once = 0;  ///< number of triangles that a single ray reached
 };
 
 /// Traces rays between random eyes and each triangle until four are unoccluded. For triangles that 1024 rays do not

@@ -125,6 +125,16 @@ TEST_F(Train, WhatAppearsInTheFolderDuringTheTrainingIsKept) {
   expect_error(train, "was written by something else during the training");
   EXPECT_EQ(folder_bytes(at("out")), saved);
   EXPECT_TRUE(fs::exists(at("out.training"))) << "it can go on";
+  // So is what replaces a scene that was there before.
+  session.progress = Progress([&, done = false](std::string_view, double) mutable {
+    if (std::exchange(done, true)) return;
+    fs::remove_all(at("out"));
+    fs::copy(at("other"), at("out"));
+  });
+  const auto other = folder_bytes(at("other"));
+  expect_error(train, "was written by something else during the training");
+  EXPECT_EQ(folder_bytes(at("out")), other);
+  session.progress = {};
   // A folder that is there before the training is replaced, which is said before.
   said();
   run(train);

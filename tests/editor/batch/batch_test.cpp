@@ -1,4 +1,5 @@
 // Batches run one script over many scenes: failures are isolated, and finished scenes are skipped on resume.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -421,6 +422,15 @@ TEST_F(Batch, RejectsReportOverInputFile) {
   options.variables = {"to=" + folder_.path().string()};
   options.report = folder_.path() / "cage-of-a.obj";
   EXPECT_THROW(batch_scenes(options), FileError);
+}
+
+TEST_F(Batch, ScriptsDoNotWriteToTheReport) {
+  options.report = options.out / "report.jsonl";
+  write_text(options.script, fmt::format(R"({{"op": "export", "plain": true, "out": "{}/{{name}}", "report": "{}"}})",
+                                         options.out.string(), options.report.string()));
+  for (const auto& [name, status] : run()) EXPECT_EQ(status, Status::failed) << name;
+  EXPECT_NE(messages["a"].find("the report of the batch"), std::string::npos) << messages["a"];
+  EXPECT_FALSE(fs::exists(options.report));
 }
 
 TEST_F(Batch, ResumeNoticesAddedMasks) {

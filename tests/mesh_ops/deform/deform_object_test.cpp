@@ -13,6 +13,7 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/deform/bends/closed_form.h"
+#include "mesh_ops/deform/cages/wrap.h"
 #include "tests/support/made_scenes.h"
 
 namespace rebake::test {

@@ -34,7 +34,7 @@ TEST_F(RefitTest, ChangesFeaturesAndIsUndone) {
   session.say = [&](const std::string& line) { said += line; };
   run(refit_);
   EXPECT_NE(said.find("texels to 2 photographs: root mean square error"), std::string::npos) << said;
-  EXPECT_NE(said.find("are in no photograph and keep their colours"), std::string::npos) << said;
+  EXPECT_NE(said.find("are in no photograph (colours kept)"), std::string::npos) << said;
   EXPECT_NE(node("ball")->object, before);
   EXPECT_EQ(node("ball")->object->sets[0].soup.shared_positions(), before->sets[0].soup.shared_positions());
   run(R"({"op": "undo"})");

@@ -26,11 +26,15 @@ TEST(SettingsFile, RoundTripsAndReportsInvalidFiles) {
   ASSERT_EQ(read.recent.size(), 12U);
   EXPECT_EQ(read.recent[0], "folder 15");
   EXPECT_EQ(read.recent[1], "folder 19");
+  int number = 0;
   for (const char* text : {"{", "[]", R"({"text_scale": []})", R"({"brush_radius": "wide"})"}) {
     write_file_atomically(file, text, {});
     problem.clear();
     EXPECT_EQ(read_settings(file, problem), Settings{}) << text;
     EXPECT_NE(problem.find(file.string()), std::string::npos) << text;
+    write_settings(settings, file);
+    const auto kept = file.string() + ".unreadable" + (number++ == 0 ? "" : "-" + std::to_string(number));
+    EXPECT_EQ(read_file(kept), text) << "what a person edited is not lost";
   }
   write_file_atomically(file, R"({"side_width": -5, "window_width": 1000000, "something_newer": 1})", {});
   EXPECT_EQ(read_settings(file, problem).side_width, 200);

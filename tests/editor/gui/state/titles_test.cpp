@@ -89,6 +89,13 @@ TEST_F(Titles, CountWhatAnEditChanged) {
   EXPECT_EQ(
       title_after(R"({"op": "cage", "lattice": [1, 1, 1], "moves": [{"points": [0, 1], "translate": [0, 1, 0]}]})"),
       "Moved 2 cage points of b");
+  // Points that stay do not count; those that turn are not counted.
+  EXPECT_EQ(title_after(R"({"op": "cage", "lattice": [1, 1, 1],
+      "moves": [{"points": [0], "translate": [0, 1, 0]}, {"points": [1]}]})"),
+            "Moved 1 cage point of b");
+  EXPECT_EQ(title_after(R"({"op": "cage", "lattice": [1, 1, 1],
+      "moves": [{"points": [0, 1], "translate": [0, 1, 0]}, {"points": [1], "translate": [0, 0, 1]}]})"),
+            "Deformed by a cage: " + part + " of b");
   EXPECT_EQ(title_after(R"({"op": "separate", "node": "b", "as": "c"})"), "Separated " + part + " as c");
   EXPECT_EQ(
       title_after(R"({"op": "erase", "node": "a", "box": {"min": [0, 0, 0], "max": [1, 1, 1]}, "frame": "bounds"})"),
