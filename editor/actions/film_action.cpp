@@ -136,8 +136,11 @@ class Film {
       folder.remove();
     }
     session_.outputs.push_back(action_.out);
-    session_.say(fmt::format("wrote {} ({:.4g} s at {:.4g} per second) to {}", counted(frames_.size(), "picture"),
-                             static_cast<double>(frames_.size()) / fps_, fps_, action_.out));
+    const std::string all = fmt::format("{} ({:.4g} s at {:.4g} per second)", counted(frames_.size(), "picture"),
+                                        static_cast<double>(frames_.size()) / fps_, fps_);
+    session_.say(video_ || known == 0 ? fmt::format("wrote {} to {}", all, action_.out)
+                                      : fmt::format("wrote {} to {}, which has all {} now", counted(drawn, "picture"),
+                                                    action_.out, all));
   }
 
  private:

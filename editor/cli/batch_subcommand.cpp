@@ -64,7 +64,9 @@ void print_table(const std::vector<BatchResult>& results) {
 // earlier report that has other hard links, so that their content stays.
 void prepare_report(const std::filesystem::path& report) {
   std::error_code error;
+  refuse_dangling_link(report);
   if (!std::filesystem::is_regular_file(report, error)) return;
+  refuse_write_protected(report);
   const std::string text = read_file(report);
   const auto first = nlohmann::json::parse(text.substr(0, text.find('\n')), nullptr, false);
   if (!text.empty() &&
@@ -128,7 +130,9 @@ void describe_batch(SubcommandDescription& command) {
     // Replaces an earlier report only when there is a result.
     std::ofstream lines;
     const auto open = [&] {
-      if (!lines.is_open()) lines.open(report);
+      if (lines.is_open()) return;
+      prepare_report(report);  // once more: it may have appeared since
+      lines.open(report);
       if (!lines) throw FileError(report, "cannot be written");
     };
     const std::vector<BatchResult> results = run_batch(batch, progress_bar(), [&](const BatchResult& result) {

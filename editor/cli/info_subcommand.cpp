@@ -19,6 +19,7 @@ using nlohmann::json;
 
 json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+// Geometry files that an object was read from, whatever edits left of it.
 std::size_t chunk_count(const BakedObject& object) {
   if (!object.origin) return object.sets.size();
   std::size_t total = 0;
@@ -58,7 +59,7 @@ json object_info(const PlacedNode& placed) {
 
 json scene_info(const Scene& scene) {
   json objects = json::array();
-  std::set<const BakedObject*> seen;
+  std::set<const void*> seen;  // objects and their files
   SharedTotals shared;
   std::uint64_t sets = 0, chunks = 0, vertices = 0, triangles = 0;
   Box box;
@@ -73,7 +74,7 @@ json scene_info(const Scene& scene) {
     // An object that several nodes share counts once.
     if (seen.insert(&object).second) {
       sets += object.sets.size();
-      chunks += chunk_count(object);
+      if (!object.origin || seen.insert(object.origin.get()).second) chunks += chunk_count(object);
     }
     shared.add(object);
     const json own_axes = Codec<Axes>::write(object.axes), own_decoder = objects.back().at("decoder");
@@ -123,7 +124,7 @@ void print(const json& info) {
     const auto files = o.at("chunks").get<std::size_t>();
     fmt::print("  layout         {}, {}{}\n", format_words(o),
                counted(o.at("texture_sets").get<std::size_t>(), "texture set"),
-               files > 0 ? ", " + counted(files, "geometry file") : "");
+               files > 0 ? ", read from " + counted(files, "geometry file") : "");
     fmt::print("  geometry       {} vertices, {}\n", o.at("vertices").get<std::size_t>(),
                counted(o.at("triangles").get<std::size_t>(), "triangle"));
     std::string sizes;

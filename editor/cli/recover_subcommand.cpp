@@ -57,7 +57,11 @@ void relink_project(const Recovery& options) {
              printable(options.out));
 }
 
-void recover(const Recovery& options) {
+void recover(Recovery options) {
+  // What a link leads to is removed at the end, not the link.
+  if (std::error_code error;
+      std::filesystem::is_symlink(options.journal, error) && std::filesystem::exists(options.journal, error))
+    options.journal = std::filesystem::canonical(options.journal).string();
   if (!options.out.ends_with(".rebake")) throw FieldError("--out", "must end in .rebake, the extension of projects");
   std::error_code error;
   const bool is_project = is_project_file(options.journal) && !Journal::is_journal(options.journal);

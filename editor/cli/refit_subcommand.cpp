@@ -1,11 +1,13 @@
 #include <memory>
 
 #include "editor/actions/export_action.h"
+#include "editor/actions/output_state.h"
 #include "editor/actions/session.h"
 #include "editor/cli/options.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
 #include "editor/edits/shape/refit.h"
+#include "mesh_ops/base/error.h"
 
 namespace rebake {
 
@@ -36,7 +38,10 @@ void describe_refit(SubcommandDescription& command) {
     opened.sources.check_folder(options->out);
     session.document = Document(std::move(opened.scene));
     session.document.protect_all(opened.sources);
+    const OutputState before(options->out);
     session.edit(options->refit);
+    if (before.has_other_content())
+      throw FileError(options->out, "was written by something else during the fit, so it is not replaced");
     ExportAction action;
     action.out = options->out;
     run(session, action);

@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include <sstream>
 
 #include "editor/actions/export_action.h"
+#include "editor/actions/output_state.h"
 #include "editor/actions/session.h"
 #include "editor/cli/subcommands.h"
 #include "editor/cli/terminal.h"
@@ -19,6 +21,7 @@
 #include "editor/edits/nodes/import.h"
 #include "editor/script/script.h"
 #include "editor/script/script_inputs.h"
+#include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/formats.h"
@@ -170,10 +173,21 @@ void write_list(const Session& session, const RunOptions& options, const std::st
   write_file_atomically(options.files, file_list(session, script, variables, at_start), session.document.sources());
 }
 
+// Whether a script wrote something to this path, or inside it.
+bool wrote(const Session& session, const std::filesystem::path& path) {
+  const std::filesystem::path all = absolute_path(path);
+  return std::any_of(session.outputs.begin(), session.outputs.end(), [&](const std::string& file) {
+    const std::filesystem::path one = absolute_path(file);
+    return std::mismatch(all.begin(), all.end(), one.begin(), one.end()).first == all.end();
+  });
+}
+
 // Runs the script, exports and lists files as the options say.
 void run_lines(Session& session, const RunOptions& options, const std::string& script,
                const std::map<std::string, std::string>& variables) {
   WrittenList list(session, options);
+  std::optional<OutputState> before;
+  if (!options.out.empty()) before.emplace(options.out);
   const Contents at_start = options.files.empty() ? Contents() : contents_of(script, variables);
   try {
     session.after_line = [&list] { list.update(); };
@@ -182,6 +196,8 @@ void run_lines(Session& session, const RunOptions& options, const std::string& s
     if (!options.out.empty() && !session.exports.empty())
       session.say(fmt::format("note: {} is not written, because the script exports", options.out));
     if (!options.out.empty() && session.exports.empty()) {
+      if (before->has_other_content() && !wrote(session, options.out))
+        throw FileError(options.out, "was written by something else during the run, so it is not replaced");
       ExportAction action;
       action.out = options.out;
       run(session, action);

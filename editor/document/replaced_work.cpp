@@ -86,6 +86,7 @@ void refuse_replacing_work_at(const fs::path& path) {
 }  // namespace
 
 void refuse_replacing_work(const fs::path& path) {
+  refuse_dangling_link(path);
   refuse_replacing_work_at(path);
   // What a link leads to is replaced, not the link.
   if (const fs::path target = plain_path(path); target != absolute_path(path)) refuse_replacing_work_at(target);

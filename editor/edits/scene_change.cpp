@@ -12,10 +12,6 @@ namespace rebake {
 
 namespace {
 
-bool same_selection(const Node& a, const Node& b) {
-  return a.selection == b.selection || (a.selection && b.selection && *a.selection == *b.selection);
-}
-
 std::size_t selected_of(const Node& node) { return node.selection ? count(*node.selection) : 0; }
 
 // Number of triangles of which a corner moved or rotated; 0 if the triangles of both objects do not correspond.
@@ -42,6 +38,10 @@ std::size_t moved_between(const BakedObject& before, const BakedObject& after) {
 }
 
 }  // namespace
+
+bool same_selection(const Node& a, const Node& b) {
+  return a.selection == b.selection || (a.selection && b.selection && *a.selection == *b.selection);
+}
 
 std::string triangles_text(std::size_t triangles) { return counted(triangles, "triangle"); }
 

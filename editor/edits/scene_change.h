@@ -19,6 +19,9 @@ struct SceneChange {
   std::vector<std::string> added;       ///< names of new nodes that are not inside other new ones
 };
 
+/// Whether two nodes have the same triangles selected.
+bool same_selection(const Node& a, const Node& b);
+
 SceneChange change_between(const Scene& before, const Scene& after);
 
 /// "1 triangle", "12 triangles".

@@ -70,7 +70,7 @@ void fill_one(const BakedObject& object, const Vec3& center, double radius, int 
   ++totals.tried;
   FilledHoles filled;
   const double time = median_milliseconds(std::min(frames, 3), [&] { filled = filled_holes(object, removed); });
-  if (filled.holes == 0 || filled.open_edges > 0 || filled.unfilled > 0) return;
+  if (filled.holes == 0 || filled.open_edges > 0 || filled.unfilled() > 0) return;
   ++totals.closed;
   totals.milliseconds += time;
   const SurfaceTexels made = texels_of(object, filled.object->sets.back(), {}, 0);

@@ -44,6 +44,13 @@ bool is_own(const fs::directory_entry& entry) {
   return name == checkpoint_name && is_checkpoint(entry.path());
 }
 
+// Throws FileError if something else was put there during the training.
+void refuse_foreign(const fs::path& file) {
+  std::error_code error;
+  if (fs::exists(fs::symlink_status(file, error)) && !is_own(fs::directory_entry(file, error)))
+    throw FileError(file, "is not what the training wrote there, so it is kept");
+}
+
 // Cells per side that suit the photographs: half a cell per pixel, from small ones to the published grid.
 int side_for(const std::vector<FitPhotograph>& photographs) {
   std::vector<int> heights;
@@ -172,6 +179,7 @@ bool TrainingRun::write_state() {
                                {"seconds", seconds()},
                                {"rows", rows_}};
   try {
+    refuse_foreign(work_ / checkpoint_name);
     write_checkpoint(work_ / checkpoint_name, head, reconstruction_->save());
     problem_.clear();
     return true;
@@ -190,7 +198,9 @@ void TrainingRun::show_progress(double mean_error, const Progress& progress) {
   const FitPhotograph photograph = reduced(reconstruction_->views().photographs().front(), preview_side);
   const Image wanted{photograph.width, photograph.height, photograph.rgb, {}};
   try {
+    refuse_foreign(work_ / table_name);
     write_file_atomically(work_ / table_name, table, {});
+    refuse_foreign(work_ / preview_name);
     write_picture(
         contact_sheet({wanted, trained_picture(*reconstruction_, photograph, progress)}, 2, 4, {128, 128, 128}),
         work_ / preview_name, {});
@@ -282,7 +292,7 @@ void TrainingRun::remove_work_files() {
   for (const char* name : {checkpoint_name, preview_name, table_name, lock_name})
     if (const fs::directory_entry entry(work_ / name, error); entry.exists(error) && is_own(entry))
       fs::remove(entry.path(), error);
-  fs::remove(work_, error);  // stays if it holds other files
+  if (!fs::is_symlink(work_, error)) fs::remove(work_, error);  // stays if it holds other files
 }
 
 }  // namespace rebake

@@ -107,11 +107,14 @@ void write_synced(const fs::path& path, std::string_view bytes, int flags) {
   write_synced(path, flags, [&](const AtomicFolder::Append& append) { append(bytes); });
 }
 
-// Temporary name "NAME.<8 hexadecimal digits>.partial" of a file or folder that is being written.
+// Programs that download files use other endings.
+constexpr std::string_view partial_ending = ".rebake-partial";
+
+// Temporary name of a file or folder that is being written: see is_partial_of().
 std::string partial_name(const std::string& name) {
   std::random_device device;
   std::string result = name;
-  result.append(".").append(hash_text(device()), 8).append(".partial");
+  result.append(".").append(hash_text(device()), 8).append(partial_ending);
   return result;
 }
 
@@ -185,15 +188,6 @@ int open_pipe(const fs::path& pipe) {
       throw FileError(pipe, "is a pipe that no program reads; start its reader first, or name a file");
     std::this_thread::sleep_for(pause);
   }
-}
-
-// A rename checks only the folder's permission, so the file's own is checked here. The mode bits count too, because the
-// superuser may write every file.
-void refuse_write_protected(const fs::path& path) {
-  struct stat about {};
-  if (file_calls().stat(path.c_str(), &about) != 0) return;
-  if ((about.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0 || ::access(path.c_str(), W_OK) != 0)
-    throw FileError(path, "is write-protected; choose another name, or make it writable first");
 }
 
 // Refuses to replace a folder with write-protected files, and the current folder: relative paths would end in the old
@@ -304,9 +298,26 @@ void sync_folder(const fs::path& folder) {
   if (!done) fail(named, "cannot be synced to disk");
 }
 
+void refuse_dangling_link(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_symlink(path, error) && !fs::exists(path, error))
+    throw FileError(path,
+                    "is a link to a file that does not exist, for example on a disk that is not mounted; remove the "
+                    "link, or name another file");
+}
+
+// A rename checks only the folder's permission, so the file's own is checked here. The mode bits count too, because the
+// superuser may write every file.
+void refuse_write_protected(const fs::path& path) {
+  struct stat about {};
+  if (file_calls().stat(path.c_str(), &about) != 0) return;
+  if ((about.st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) == 0 || ::access(path.c_str(), W_OK) != 0)
+    throw FileError(path, "is write-protected; choose another name, or make it writable first");
+}
+
 bool is_partial_of(const std::string& name, const std::string& of) {
-  constexpr std::string_view ending = ".partial";
-  if (name.size() != of.size() + 9 + ending.size() || !name.starts_with(of) || !name.ends_with(ending)) return false;
+  if (name.size() != of.size() + 9 + partial_ending.size() || !name.starts_with(of) || !name.ends_with(partial_ending))
+    return false;
   const std::string digits = name.substr(of.size(), 9);
   return digits[0] == '.' && digits.find_first_not_of("0123456789abcdef", 1) == std::string::npos;
 }
@@ -316,6 +327,7 @@ void write_file_atomically(const fs::path& named, std::string_view bytes, const 
     throw FileError(named, "must be the name of a file, without a slash or dot at its end");
   check_parents(named);
   guard.check_file(named);
+  refuse_dangling_link(named);
   const fs::path path = followed(named);
   std::error_code error;
   if (path.has_parent_path() && !fs::is_directory(path.parent_path(), error))

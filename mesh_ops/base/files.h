@@ -48,7 +48,15 @@ std::string read_input(const std::filesystem::path& path, std::uint64_t most = s
 /// not support it are ignored.
 void sync_folder(const std::filesystem::path& folder);
 
-/// Whether `name` is that of a file or folder named `of` while it is written: "OF.<8 hexadecimal digits>.partial".
+/// Throws FileError if the path is a link to nothing, for example to a file on a disk that is not mounted: writing
+/// would replace the link.
+void refuse_dangling_link(const std::filesystem::path& path);
+
+/// Throws FileError if the file exists and is write-protected, also for the superuser.
+void refuse_write_protected(const std::filesystem::path& path);
+
+/// Whether `name` is that of a file or folder named `of` while it is written: "OF.<8 hexadecimal
+/// digits>.rebake-partial".
 bool is_partial_of(const std::string& name, const std::string& of);
 
 /// Replaces a file atomically and durably: writes and syncs a temporary file beside it, renames it, and syncs the

@@ -172,17 +172,19 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
     if (set.texels->alpha_code() != code) throw EditError("the object's textures store alpha in different ways");
   result.open_edges = borders.open_edges;
   const Triangles triangles(object);
-  // 0 if UVs have no area; no hole can then be textured.
-  const double texel = texel_size(triangles, borders.loops);
-  if (!(texel > 0)) longest = 0;
+  const double texel = texel_size(triangles, borders.loops);  // 0 if UVs have no area
   std::vector<HolePatch> patches;
   std::vector<PatchFeatures> features;
   ColorSteps steps;
   const std::vector<std::uint32_t> number = numbers_without(removed);
   for (const HoleLoop& loop : borders.loops) {
     progress.at("filling",
-                static_cast<double>(result.holes + result.unfilled) / static_cast<double>(borders.loops.size()));
-    HolePatch patch = loop.points.size() > longest ? HolePatch() : hole_patch(loop, progress);
+                static_cast<double>(result.holes + result.unfilled()) / static_cast<double>(borders.loops.size()));
+    if (loop.points.size() > longest || !(texel > 0)) {
+      ++(loop.points.size() > longest ? result.longer : result.untextured);
+      continue;
+    }
+    HolePatch patch = hole_patch(loop, progress);
     std::vector<std::optional<Bytes>> border;
     const Vec3 view = patch.faces.empty() ? Vec3::Zero() : normal_of(patch);
     for (const auto& corners : loop.corners) {
@@ -192,7 +194,7 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
     }
     PatchFeatures own = patch.faces.empty() ? PatchFeatures() : harmonic_features(patch, border);
     if (own.empty()) {
-      ++result.unfilled;
+      ++(patch.faces.empty() ? result.crossing : result.untextured);
       continue;
     }
     ++result.holes;

@@ -15,7 +15,11 @@ struct FilledHoles {
   /// Root mean square difference of display colours (0 … 1) between the texels at the borders and the colours that the
   /// patches continue from there, seen along the patches' normals.
   double color_step = 0;
-  std::size_t open_edges = 0, unfilled = 0;  ///< border edges of no loop; loops that were not triangulated
+  std::size_t open_edges = 0;  ///< border edges that form no loop
+  std::size_t longer = 0;      ///< loops with more edges than wanted, or than longest_loop
+  /// Loops around which UVs have no area, or no texel is opaque, and loops that cross themselves.
+  std::size_t untextured = 0, crossing = 0;
+  std::size_t unfilled() const { return longer + untextured + crossing; }
   /// Per triangle of the patches: the closed hole that it belongs to.
   std::vector<std::size_t> hole_of;
   /// Per closed hole: the triangles around it, numbered without the removed ones.

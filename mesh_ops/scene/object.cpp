@@ -54,10 +54,13 @@ void SharedTotals::add(const BakedObject& object) {
       for (const auto& [name, attribute] : *attributes) count(attribute.get(), attribute->memory());
     const FeatureTexture& texels = *set.texels;
     if (!seen_.insert(&texels).second) continue;
-    opaque_texels_ += texels.opaque_count();
     for (int row = 0; row < texels.tile_rows(); ++row)
-      for (int column = 0; column < texels.tile_columns(); ++column)
-        count(texels.tile(column, row).get(), texels.tile(column, row)->memory());
+      for (int column = 0; column < texels.tile_columns(); ++column) {
+        const TexelTile& tile = *texels.tile(column, row);
+        count(&tile, tile.memory());
+        // Edited textures share the tiles that stay, at their places. One texture may also have equal tiles.
+        if (tiles_.insert({&tile, column, row}).second) opaque_texels_ += tile.opaque_count();
+      }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "mesh_ops/mesh/soup.h"
@@ -119,6 +120,7 @@ class SharedTotals {
 
  private:
   std::set<const void*> seen_;
+  std::set<std::tuple<const TexelTile*, int, int>> tiles_;  ///< with column and row
   std::uint64_t opaque_texels_ = 0, memory_ = 0;
 };
 

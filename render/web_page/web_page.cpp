@@ -155,16 +155,21 @@ class Publisher {
   std::size_t triangles() const { return triangles_; }
 
  private:
-  // Draws that move have frames of their own, which the page rotates.
+  // Nodes that move have frames of their own, which the page rotates. Leaves out those that no draw uses then.
   void give_own_frames(const SceneMotion& motion) {
+    frame_list_.clear();
+    std::map<std::pair<NodeId, std::size_t>, std::size_t> number_of;  // by the node, if it moves, and its former frame
     for (std::size_t k = 0; k < plan_.draws.size(); ++k) {
-      const auto moved = motion.places.find(plan_.draws[k].node);
+      const Draw& draw = plan_.draws[k];
+      const auto moved = motion.places.find(draw.node);
+      const NodeId own = moved == motion.places.end() ? NodeId::none : draw.node;
+      const auto [frame, added] = number_of.emplace(std::pair(own, draw.frame), frame_list_.size());
+      if (added) frame_list_.push_back(plan_.frames[draw.frame]);
+      frame_of_[k] = frame->second;
       if (moved == motion.places.end()) continue;
       moving_.push_back(k);
-      frame_list_.push_back(plan_.frames[plan_.draws[k].frame]);
-      frame_of_[k] = frame_list_.size() - 1;
-      const Affine rest = camera_to_world_ * plan_.draws[k].to_camera;
-      const Box bounds = bounds_of(plan_.draws[k]);
+      const Affine rest = camera_to_world_ * draw.to_camera;
+      const Box bounds = bounds_of(draw);
       for (const Affine& place : moved->second.at_times)
         box_.extend(transformed(bounds, place * moved->second.rest.inverse() * rest));
     }

@@ -8,6 +8,7 @@
 
 #include "editor/edits/select/selecting.h"
 #include "editor/edits/shared_result_cache.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/formats/cage_file.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/index/opacity.h"
@@ -91,7 +92,8 @@ namespace {
 
 std::string in_words(const std::string& name, const DeformationReport& report) {
   std::string line =
-      fmt::format("{} vertices of \"{}\" deformed, minimum det J {:.3g}", report.changed, name, report.min_determinant);
+      fmt::format("{} of \"{}\" deformed, minimum det J {:.3g}",
+                  counted(report.changed, "welded vertex", "welded vertices"), name, report.min_determinant);
   if (report.folded > 0)
     line +=
         fmt::format("; {} are folded or collapsed (det J ≤ 0): select_folded selects their triangles", report.folded);
@@ -116,7 +118,7 @@ Outcome with_deformed(const Scene& scene, const DeformSet& set, double falloff, 
       report.lines.push_back(in_words(set.nodes[k].node->name, made.report));
     if (made.report.opaque_outside > 0)
       throw EditError(fmt::format(
-          "{} of the {} vertices of \"{}\" are outside the cage, where these coordinates are undefined; use "
+          "{} of the {} welded vertices of \"{}\" are outside the cage, where these coordinates are undefined; use "
           "mean_value, or "
           "a coarser wrap or a larger cage",
           made.report.opaque_outside, made.report.points, set.nodes[k].node->name));

@@ -8,6 +8,7 @@ namespace rebake {
 /// region of a picture; exactly one must be given. All other texels stay bit for bit.
 struct Erase {
   static constexpr const char* op = "erase";
+  static constexpr const char* done = "Erased in";
   std::optional<NodeRef> node;  ///< nothing: all visible, unlocked objects
   std::vector<NodeRef> nodes;   ///< several nodes, in place of `node`
   std::optional<BoxRegion> box;

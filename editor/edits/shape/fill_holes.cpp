@@ -1,35 +1,38 @@
 #include "editor/edits/shape/fill_holes.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "editor/edits/describe_edit.h"
 #include "editor/edits/shape/fill_report.h"
+#include "mesh_ops/base/counted.h"
 
 namespace rebake {
 
 Outcome apply(const Scene& scene, const FillHoles& edit, const Progress& progress) {
   if (edit.longest < 3) throw FieldError("longest", "must be at least 3");
+  const auto longest = static_cast<std::size_t>(edit.longest);
   Scene result = scene;
-  Report report, skipped;
-  std::size_t holes = 0, longer = 0;
+  Report report;
+  std::vector<std::string> open;
+  bool any = false;
   for (const PlacedNode& placed : objects_with_selection(scene, edit.node)) {
-    const FilledHoles filled = filled_open_holes(*placed.node->object, *placed.node->selection,
-                                                 static_cast<std::size_t>(edit.longest), progress);
-    holes += filled.holes;
-    longer += filled.unfilled;
+    const FilledHoles filled = filled_open_holes(*placed.node->object, *placed.node->selection, longest, progress);
     if (filled.holes == 0) {
-      if (filled.unfilled > 0) skipped.lines.push_back(unfilled_words(placed.node->name, filled.unfilled));
+      if (filled.unfilled() > 0)
+        open.push_back(fmt::format("\"{}\": {} open: {}", placed.node->name,
+                                   counted(filled.unfilled(), "border stays", "borders stay"),
+                                   unfilled_words(filled, longest)));
       continue;
     }
+    any = true;
     result = with_changed(result, placed.node->id, [&](Node& node) { set_filled(node, filled); });
-    report_filling(placed.node->name, filled, report);
+    report_filling(placed.node->name, filled, report, longest);
   }
-  if (holes == 0)
-    throw EditError(longer > 0
-                        ? fmt::format("{} borders of the selected triangles are longer than {} edges: raise longest",
-                                      longer, edit.longest)
-                        : "the selected triangles have no closed border: select all triangles around a hole");
-  report.lines.insert(report.lines.end(), skipped.lines.begin(), skipped.lines.end());
+  if (!any)
+    throw EditError(open.empty() ? "the selected triangles have no closed border: select all triangles around a hole"
+                                 : fmt::format("{}", fmt::join(open, "; ")));
+  for (const std::string& one : open) report.lines.push_back("note: " + one);
   return {std::move(result), std::move(report)};
 }
 

@@ -1,6 +1,7 @@
 #include "editor/edits/shape/fill_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -9,7 +10,7 @@
 
 namespace rebake {
 
-void report_filling(const std::string& node, const FilledHoles& filled, Report& report) {
+void report_filling(const std::string& node, const FilledHoles& filled, Report& report, std::size_t longest) {
   report.lines.push_back(fmt::format(
       "\"{}\": {}{} closed with {} of area {:.4g} and {}; colours at the border "
       "differ by {:.1f} of "
@@ -19,12 +20,21 @@ void report_filling(const std::string& node, const FilledHoles& filled, Report& 
   if (filled.open_edges > 0)
     report.lines.push_back(fmt::format("note: \"{}\": {} of the border form no closed loop and stay open", node,
                                        counted(filled.open_edges, "edge")));
-  if (filled.unfilled > 0) report.lines.push_back(unfilled_words(node, filled.unfilled));
+  if (filled.unfilled() > 0)
+    report.lines.push_back(fmt::format("note: \"{}\": {} open: {}", node,
+                                       counted(filled.unfilled(), "hole stays", "holes stay"),
+                                       unfilled_words(filled, longest)));
 }
 
-std::string unfilled_words(const std::string& node, std::size_t holes) {
-  return fmt::format("note: \"{}\": {} open: their borders cross themselves, or are too long", node,
-                     counted(holes, "hole stays", "holes stay"));
+std::string unfilled_words(const FilledHoles& filled, std::size_t longest) {
+  std::vector<std::string> reasons;
+  if (filled.longer > 0)
+    reasons.push_back(fmt::format("{} more than {} edges{}", counted(filled.longer, "has", "have"),
+                                  std::min(longest, longest_loop),
+                                  longest < longest_loop ? " (raise longest)" : ", the most that can be closed"));
+  if (filled.untextured > 0) reasons.push_back(counted(filled.untextured, "has", "have") + " no opaque texels around");
+  if (filled.crossing > 0) reasons.push_back(counted(filled.crossing, "crosses itself", "cross themselves"));
+  return fmt::format("{}", fmt::join(reasons, ", "));
 }
 
 void set_filled(Node& node, const FilledHoles& filled) {

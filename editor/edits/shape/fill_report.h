@@ -2,14 +2,16 @@
 
 #include "editor/edits/support.h"
 #include "mesh_ops/fill/filled_holes.h"
+#include "mesh_ops/fill/hole_patch.h"
 
 namespace rebake {
 
-/// Appends what filling the holes of a node did.
-void report_filling(const std::string& node, const FilledHoles& filled, Report& report);
+/// Appends what filling the holes of a node did. `longest`: as for unfilled_words().
+void report_filling(const std::string& node, const FilledHoles& filled, Report& report,
+                    std::size_t longest = longest_loop);
 
-/// The note that holes of a node stay open.
-std::string unfilled_words(const std::string& node, std::size_t holes);
+/// Why holes stay open: "2 have more than 8 edges, 1 crosses itself". `longest`: edges of the longest that are wanted.
+std::string unfilled_words(const FilledHoles& filled, std::size_t longest);
 
 /// Gives a node its filled object. The patches come last, so stored selections, which do not contain them, only grow.
 void set_filled(Node& node, const FilledHoles& filled);

@@ -172,9 +172,9 @@ class EditorWindow {
     editor_.settings.window_width = static_cast<int>(std::lround(window().width() / window().scale()));
     editor_.settings.window_height = static_cast<int>(std::lround(window().height() / window().scale()));
     if (editor_.settings == saved_settings_ || ImGui::IsAnyMouseDown()) return;
-    saved_settings_ = editor_.settings;
+    const Settings known = std::exchange(saved_settings_, editor_.settings);
     try {
-      write_settings(saved_settings_, settings_file_);
+      write_settings(saved_settings_, known, settings_file_);
     } catch (const Error& error) {
       editor_.messages.fail(error.what());
     }

@@ -29,6 +29,7 @@ Vec3 shown(const Vec3& value, double size) {
 
 std::string rows_of(const DocumentEditor& editor) {
   std::size_t triangles = 0, sets = 0;
+  std::set<const BakedObject*> objects;  // copies share them
   SharedTotals shared;
   bool bent = false;
   // Of the picked nodes and those inside them, each once.
@@ -39,7 +40,7 @@ std::string rows_of(const DocumentEditor& editor) {
     for (const NodePtr& child : one->children) inside.insert(child->id);
     if (!one->object) continue;
     triangles += one->object->triangle_count();
-    sets += one->object->sets.size();
+    if (objects.insert(one->object.get()).second) sets += one->object->sets.size();
     shared.add(*one->object);
     bent = bent || one->object->any_rotations();
   }

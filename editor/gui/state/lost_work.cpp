@@ -90,15 +90,15 @@ void empty_trash() {
   sweep(trash_folder(), [now = fs::file_time_type::clock::now()](const fs::path& path) {
     std::error_code unknown;
     const fs::file_time_type discarded = fs::last_write_time(path, unknown);
-    return !unknown && path.extension() == ".journal" && now - discarded > std::chrono::days(trash_days) &&
-           !Journal::in_use(path);
+    return !unknown && path.extension() == ".journal" && Journal::is_journal(path) &&
+           now - discarded > std::chrono::days(trash_days) && !Journal::in_use(path);
   });
 }
 
 void forget_thumbnails_without_journal() {
   sweep(thumbnail_path("x").parent_path(), [](const fs::path& path) {
     std::error_code unknown;
-    return path.extension() == ".png" && is_rendered_picture(path) &&
+    return path.extension() == ".png" && path.stem().extension() == ".journal" && is_rendered_picture(path) &&
            !fs::exists(journal_folder() / path.stem(), unknown) && !fs::exists(trash_folder() / path.stem(), unknown);
   });
 }

@@ -110,9 +110,7 @@ void keep_unreadable(const fs::path& file) {
 
 }  // namespace
 
-void write_settings(const Settings& settings, const fs::path& file) {
-  json object;
-  for_fields(settings, [&](const char* name, const auto& value) { object[name] = value; });
+void write_settings(const Settings& settings, const Settings& known, const fs::path& file) {
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error) throw FileError(file.parent_path(), "cannot be created: " + error.message());
@@ -121,6 +119,11 @@ void write_settings(const Settings& settings, const fs::path& file) {
   } catch (const fs::filesystem_error& failed) {
     throw FileError(file, std::string("cannot be read, nor renamed: ") + failed.code().message());
   }
+  json object = fs::exists(file) ? json::parse(read_file(file)) : json::object(), before;
+  for_fields(known, [&](const char* name, const auto& value) { before[name] = value; });
+  for_fields(settings, [&](const char* name, const auto& value) {
+    if (const json now = value; !object.contains(name) || before.at(name) != now) object[name] = now;
+  });
   write_file_atomically(file, object.dump(1) + "\n", {});
 }
 

@@ -47,7 +47,8 @@ std::filesystem::path journal_folder();
 /// Reads settings; numbers out of range are clamped. If the file is missing or invalid, returns the defaults; `problem`
 /// is set to a message if it is invalid.
 Settings read_settings(const std::filesystem::path& file, std::string& problem);
-/// Writes settings atomically; a file that cannot be read is renamed first. Throws FileError.
-void write_settings(const Settings& settings, const std::filesystem::path& file);
+/// Writes the settings that differ from `known` atomically, and those that the file lacks: what people or newer builds
+/// wrote there meanwhile stays. A file that cannot be read is renamed first. Throws FileError.
+void write_settings(const Settings& settings, const Settings& known, const std::filesystem::path& file);
 
 }  // namespace rebake

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -35,6 +37,31 @@ bool is_part(const Edit& edit) {
   return !fields.contains("node") || fields.value("selection", false) || fields.contains("box");
 }
 
+// Adds the nodes that selecting edits work on and whose selection they leave as it was: it counts with the others.
+void add_unchanged(SceneChange& change, const std::vector<Edit>& group, const Scene& before, const Scene& after) {
+  std::set<NodeId> inside;  // the named nodes with their children; none: all nodes
+  for (const Edit& edit : group)
+    for (const NodeId id : edit.type().named_nodes(edit.value())) inside.insert(id);
+  const bool all = inside.empty();
+  std::map<NodeId, NodePtr> was;
+  for (const PlacedNode& placed : placed_nodes(before)) was[placed.node->id] = placed.node;
+  std::vector<std::string> names;
+  for (const PlacedNode& placed : placed_nodes(after)) {
+    const Node& node = *placed.node;
+    if (inside.contains(node.id))
+      for (const NodePtr& child : node.children) inside.insert(child->id);
+    if (!node.selection || count(*node.selection) == 0) continue;
+    const auto old = was.find(node.id);
+    const bool same = old != was.end() && same_selection(*old->second, node);
+    if (same && ((!all && !inside.contains(node.id)) || !placed.visible || placed.locked)) continue;
+    names.push_back(node.name);
+    if (!same) continue;
+    change.selected_before += count(*node.selection);
+    change.selected_after += count(*node.selection);
+  }
+  change.with_selected = std::move(names);
+}
+
 }  // namespace
 
 std::string title_of(const std::vector<Edit>& group, const Scene& before, const Scene& after, const Edit* replaced) {
@@ -44,9 +71,10 @@ std::string title_of(const std::vector<Edit>& group, const Scene& before, const 
     if (group.size() > 1) said += fmt::format(" and {} more", group.size() - 1);
     return said;
   }
-  const SceneChange change = change_between(before, after);
+  SceneChange change = change_between(before, after);
   if (first.type().selects) {
     if (change.names.empty()) return "Selection unchanged";
+    add_unchanged(change, group, before, after);
     if (change.selected_after == 0)
       return "Deselected " + triangles_text(change.selected_before) + " in " + listed(change.names);
     const std::string where = " in " + listed(change.with_selected);
@@ -81,7 +109,11 @@ std::string title_of(const std::vector<Edit>& group, const Scene& later) {
   if (first.type().selects) return "Selected triangles" + (of.empty() ? "" : " in " + of);
   if (first.type().needs_selection)
     return first.type().done(first.value()) + " the selected triangles" + (of.empty() ? "" : " in " + of);
-  return first.type().done(first.value()) + " " + (of.empty() ? "the selection" : of);
+  if (!of.empty()) return first.type().done(first.value()) + " " + of;
+  // Nodes that are named but not there any more were removed later.
+  const bool named_some = std::any_of(group.begin(), group.end(),
+                                      [](const Edit& edit) { return !edit.type().named_nodes(edit.value()).empty(); });
+  return first.type().done(first.value()) + (named_some ? " what was removed later" : " the selection");
 }
 
 }  // namespace rebake

@@ -18,6 +18,13 @@ fs::path picture_file(const std::string& path) {
   return cache_folder() / "pictures" / (hash_text(content_hash(path)) + ".png");
 }
 
+// Whether it has the name of a picture_file(), not that of a picture that somebody put there.
+bool has_own_name(const fs::path& file) {
+  const std::string hash = file.stem().string();
+  return file.extension() == ".png" && hash.size() == hash_text(0).size() &&
+         hash.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
 }  // namespace
 
 unsigned Thumbnails::of_view(const Scene& scene, const std::string& name) {
@@ -74,7 +81,8 @@ void Thumbnails::keep(const std::string& path, const std::vector<std::string>& r
   std::set<fs::path> wanted = {file};
   for (const std::string& one : recent) wanted.insert(picture_file(one));
   for (const fs::directory_entry& entry : fs::directory_iterator(file.parent_path()))
-    if (std::error_code error; !wanted.contains(entry.path()) && is_rendered_picture(entry.path()))
+    if (std::error_code error;
+        !wanted.contains(entry.path()) && has_own_name(entry.path()) && is_rendered_picture(entry.path()))
       fs::remove(entry.path(), error);
   write_picture(thumbnail_of(seen, width, height), file, {});
   files_.erase(file);

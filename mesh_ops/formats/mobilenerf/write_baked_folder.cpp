@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/features/atlas/atlas.h"
@@ -63,7 +64,7 @@ bool copy_unchanged(AtomicFolder& out, const fs::path& to, const Origin& origin,
 }
 
 // Text of a count: exact below a million.
-std::string counted(std::uint64_t count) {
+std::string in_millions(std::uint64_t count) {
   return count < 1'000'000 ? fmt::format("{}", count) : fmt::format("{:.2f} million", static_cast<double>(count) / 1e6);
 }
 
@@ -128,10 +129,11 @@ Fitted fitted(const BakedObject& object, Layout layout, bool all_texels, std::op
     packed = packed_pages(edited, largest, code);
     const std::vector<PackedPage> before = as_pages(edited);
     if (area_of(packed) < area_of(before) || must_pack) {
-      notes.push_back(fmt::format(
-          "edited texture sets were repacked without unused texels: {} instead of {} texels "
-          "({} → {}); {} other sets are unchanged",
-          counted(area_of(packed)), counted(area_of(before)), sizes_of(before), sizes_of(packed), result.kept.size()));
+      notes.push_back(
+          fmt::format("edited texture sets were repacked without unused texels: {} instead of {} texels "
+                      "({} → {}); {} not repacked",
+                      in_millions(area_of(packed)), in_millions(area_of(before)), sizes_of(before), sizes_of(packed),
+                      counted(result.kept.size(), "other set was", "other sets were")));
     } else {
       packed.clear();
       result.kept.insert(result.kept.end(), edited.begin(), edited.end());

@@ -53,12 +53,15 @@ TEST_F(FilmActionTest, GoesOnAfterAnInterruptionWithTheSamePictures) {
   said();
   run(film(R"("out": "{here}/film")"));
   EXPECT_EQ(folder_bytes(at("film")), all);
-  EXPECT_NE(said().find("3 of 5 pictures exist already"), std::string::npos);
+  const std::string words = said();
+  EXPECT_NE(words.find("3 of 5 pictures exist already"), std::string::npos) << words;
+  EXPECT_NE(words.find("wrote 2 pictures to"), std::string::npos) << words;
+  EXPECT_NE(words.find("which has all 5 pictures"), std::string::npos) << words;
   // A picture that is not as it was written may hold somebody's work. What a killed run left is removed.
   write_text(at("film/00001.png"), all.at("00001.png") + "retouched");
   expect_error(film(R"("out": "{here}/film")"), "was changed or damaged since");
   fs::remove(at("film/00001.png"));
-  write_text(at("film/00003.png.1234abcd.partial"), "half of a picture");
+  write_text(at("film/00003.png.1234abcd.rebake-partial"), "half of a picture");
   run(film(R"("out": "{here}/film")"));
   EXPECT_EQ(folder_bytes(at("film")), all);
   // Pictures of an edited scene need another folder.
@@ -101,16 +104,16 @@ TEST_F(FilmActionTest, DistinguishesFormatsAndObjectsThatOnlyCastShadows) {
 
 TEST_F(FilmActionTest, LeavesFoldersOfRunningFilmsAndForeignPartsAlone) {
   run(film(R"("out": "{here}/film")"));
-  write_text(at("film/00003.png.1234abcd.partial"), "half of a picture");
+  write_text(at("film/00003.png.1234abcd.rebake-partial"), "half of a picture");
   {
     const FolderLock other(at("film"));
     expect_error(film(R"("out": "{here}/film")"), "in use: another run writes its film there");
-    EXPECT_TRUE(fs::exists(at("film/00003.png.1234abcd.partial")));
+    EXPECT_TRUE(fs::exists(at("film/00003.png.1234abcd.rebake-partial")));
   }
   fs::create_directories(at("mine"));
-  write_text(at("mine/film.json.mine.partial"), "my notes");
+  write_text(at("mine/film.json.mine.rebake-partial"), "my notes");
   expect_error(film(R"("out": "{here}/mine")"), "is not a film's folder");
-  EXPECT_EQ(read_file(at("mine/film.json.mine.partial")), "my notes");
+  EXPECT_EQ(read_file(at("mine/film.json.mine.rebake-partial")), "my notes");
 }
 
 TEST_F(FilmActionTest, ProtectsItsCameraFile) {

@@ -296,7 +296,7 @@ TEST_F(Guards, PicturesOfOthersAreNotReplaced) {
   EXPECT_EQ(read_file(path("e.png")), "a map of somebody");
 }
 
-// Writing to a symbolic link replaces the file it leads to.
+// Writing to a symbolic link replaces the file it leads to. Links to nothing stay.
 TEST_F(Guards, LinksToFilesOfOthersAreNotWrittenThrough) {
   fs::create_directories(path("cap/images"));
   fs::create_directories(path("film"));
@@ -315,12 +315,10 @@ TEST_F(Guards, LinksToFilesOfOthersAreNotWrittenThrough) {
     for (const std::string link : {"links/a.png", "links/b.png", "more/a.png"}) {
       fs::create_symlink("../" + target, path("links/a.png"));
       fs::create_symlink("a.png", path("links/b.png"));
-      EXPECT_EQ(program("render " + kettle + " -o {}/" + link + " --size 8x8"), target == "cap/images/new.png" ? 0 : 1)
-          << target << ", " << link << '\n'
-          << log();
+      EXPECT_EQ(program("render " + kettle + " -o {}/" + link + " --size 8x8"), 1) << target << ", " << link << '\n'
+                                                                                   << log();
       fs::remove(path("links/a.png"));
       fs::remove(path("links/b.png"));
-      fs::remove(path("cap/images/new.png"));
       fs::remove(path("log"));
       EXPECT_EQ(folder_bytes(path("")), before) << target << ", " << link;
     }
@@ -474,10 +472,10 @@ TEST_F(Guards, KeepsDamagedProjectsAndLeftoversThatAreRead) {
   EXPECT_EQ(program("recover {}/left.journal -o {}/damaged.rebake --replace"), 1);
   EXPECT_NE(log().find("damaged project"), std::string::npos) << log();
   // The leftover of a killed export that the script imports.
-  fs::copy(fs::path(REBAKE_SOURCE) / "samples/scenes/kettle", path(".ex.1234abcd.partial"));
+  fs::copy(fs::path(REBAKE_SOURCE) / "samples/scenes/kettle", path(".ex.1234abcd.rebake-partial"));
   write("script.jsonl", import_line() + fmt::format("{{\"op\": \"export\", \"out\": \"{}\"}}\n", path("ex").string()) +
                             fmt::format("{{\"op\": \"import\", \"path\": \"{}\", \"as\": \"left\"}}\n",
-                                        path(".ex.1234abcd.partial").string()));
+                                        path(".ex.1234abcd.rebake-partial").string()));
   EXPECT_EQ(program("run {}/script.jsonl"), 0) << log();
 }
 

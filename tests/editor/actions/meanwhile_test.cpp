@@ -1,7 +1,9 @@
 // Files that other programs write while a run is busy are kept, even if their names are those of its outputs.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "mesh_ops/base/files.h"
@@ -96,6 +98,47 @@ TEST_F(Meanwhile, ScenesWhereAFittedOneGoesAreKept) {
   session.progress = {};
   run(plain);
   run(plain);
+}
+
+// Runs the program while ffmpeg, called for the film of a script, is a stand-in that runs these commands.
+int run_with_encoder(const fs::path& folder, const std::string& commands, const std::string& arguments) {
+  fs::create_directories(folder / "bin");
+  write_text(folder / "bin/ffmpeg", "#!/bin/sh\ncd '" + folder.string() + "'\n" + commands + "\nexit 1\n");
+  fs::permissions(folder / "bin/ffmpeg", fs::perms::owner_all);
+  const std::string command = fmt::format("cd '{0}' && PATH='{0}/bin':\"$PATH\" '{1}' {2} >log 2>&1", folder.string(),
+                                          REBAKE_PROGRAM, arguments);
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST_F(Meanwhile, NotesWhereTheReportOfABatchGoesAreKept) {
+  write_text(
+      at("s.jsonl"),
+      R"({"op": "film", "path": "turntable", "fps": 1, "seconds": 1, "width": 16, "height": 16, "out": "{name}.mp4"})");
+  write_text(at("precious"), "my text");
+  for (const char* commands :
+       {"echo my notes >results/report.jsonl", "rm results/report.jsonl; ln -s ../precious results/report.jsonl"}) {
+    EXPECT_EQ(run_with_encoder(folder_.path(), commands, "batch s.jsonl --scenes ball -o results"), 1);
+    EXPECT_NE(read_file(at("log")).find("report.jsonl: is not a batch report"), std::string::npos)
+        << read_file(at("log"));
+    EXPECT_EQ(read_file(at("precious")), "my text");
+    EXPECT_EQ(read_file(at("results/report.jsonl")),
+              fs::is_symlink(at("results/report.jsonl")) ? "my text" : "my notes\n");
+    fs::remove_all(at("results"));
+  }
+}
+
+TEST_F(Meanwhile, ScenesWhereTheResultOfAScriptGoesAreKept) {
+  write_text(
+      at("s.jsonl"),
+      R"({"op": "film", "path": "turntable", "fps": 1, "seconds": 1, "width": 16, "height": 16, "out": "a.mp4"})");
+  // The encoder fails only after a video exists; a script goes on if its film succeeds.
+  EXPECT_EQ(run_with_encoder(folder_.path(), "cp -r other out; for last; do :; done; printf x >\"$last\"; exit 0",
+                             "run s.jsonl --scene ball --out out"),
+            1);
+  EXPECT_NE(read_file(at("log")).find("out: was written by something else during the run"), std::string::npos)
+      << read_file(at("log"));
+  EXPECT_EQ(folder_hash(at("out")), folder_hash(at("other")));
 }
 
 }  // namespace

@@ -187,6 +187,27 @@ TEST_F(Train, BadInputIsRefusedBeforeAnythingIsWritten) {
   EXPECT_FALSE(fs::exists(at("out.training")));
 }
 
+TEST_F(Train, WhatOthersPutAmongTheFilesOfATrainingIsKept) {
+  photograph("transforms_train", 8);
+  const auto capture = folder_hash(at("cap"));
+  fs::create_symlink("fast", at("out.training"));
+  fs::create_directories(at("fast"));
+  int steps = 0;
+  session.progress = Progress([&](std::string_view what, double) {
+    if (!what.starts_with("training") || ++steps != 20) return;
+    fs::remove(at("fast/rebake-preview.png"));
+    fs::create_symlink(at("cap/transforms_train00.png"), at("fast/rebake-preview.png"));
+    write_text(at("fast/rebake-progress.csv"), "my own table");
+  });
+  run(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/out", "side": 16, "steps": 300})");
+  EXPECT_EQ(folder_hash(at("cap")), capture);
+  EXPECT_EQ(read_file(at("fast/rebake-progress.csv")), "my own table");
+  EXPECT_TRUE(fs::is_symlink(at("fast/rebake-preview.png")));
+  EXPECT_TRUE(fs::is_symlink(at("out.training")));
+  const std::string words = said();
+  EXPECT_NE(words.find("rebake-progress.csv: is not what the training wrote there"), std::string::npos) << words;
+}
+
 TEST_F(Train, CheckpointsThatCannotBeWrittenDoNotStopIt) {
   photograph("transforms_train", 8);
   // Files of others in the folder are not touched.

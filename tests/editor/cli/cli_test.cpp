@@ -67,6 +67,7 @@ TEST_F(Cli, InfoCountsSharedTexelsOnce) {
   const auto parts = nlohmann::json::parse(rebake_run("info " + in("p.rebake") + " --json").text);
   ASSERT_EQ(parts.at("objects").size(), 3U);
   EXPECT_EQ(parts.at("opaque_texels"), whole.at("opaque_texels"));
+  EXPECT_EQ(parts.at("chunks"), 1) << "both parts were read from one file";
   EXPECT_LT(parts.at("memory"), 1.5 * whole.at("memory").get<double>());
 }
 
@@ -86,11 +87,11 @@ TEST_F(Cli, InfoHasTheBoundsOfRotatedTriangles) {
 TEST_F(Cli, InfoNamesFormatAndDecoder) {
   const auto said = [&](const std::string& path) { return rebake_run("info " + path).text; };
   const std::string tests = REBAKE_SOURCE "/tests/mesh_ops/formats/";
-  EXPECT_NE(said(in("ball")).find("split, 1 texture set, 1 geometry file\n"), std::string::npos)
+  EXPECT_NE(said(in("ball")).find("split, 1 texture set, read from 1 geometry file\n"), std::string::npos)
       << said(in("ball"));
   EXPECT_NE(said(in("ball")).find("decoder        11-16-16-3\n"), std::string::npos);
   const std::string nerf2mesh = said(tests + "nerf2mesh/written_by_nerf2mesh");
-  EXPECT_NE(nerf2mesh.find("layout         nerf2mesh, 2 texture sets, 4 geometry files\n"), std::string::npos)
+  EXPECT_NE(nerf2mesh.find("layout         nerf2mesh, 2 texture sets, read from 4 geometry files\n"), std::string::npos)
       << nerf2mesh;
   EXPECT_NE(nerf2mesh.find("decoder        6-32-3, added to a diffuse colour\n"), std::string::npos) << nerf2mesh;
   const std::string mesh = said(tests + "meshes/blender/blender.glb");

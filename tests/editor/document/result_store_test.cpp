@@ -72,19 +72,21 @@ TEST(ResultStore, EvictsLeastRecentlyUsedWithinLimit) {
 TEST(ResultStore, RemovesLeftoversOfKilledWrites) {
   const TemporaryFolder folder;
   ResultStore store(folder.path());
-  for (const std::string& name : {key("old") + ".result.x.partial", key("new") + ".result.x.partial"})
+  for (const std::string& name : {key("old") + ".result.x.rebake-partial", key("new") + ".result.x.rebake-partial"})
     write_file_atomically(folder.path() / name, "half", {});
-  fs::last_write_time(folder.path() / (key("old") + ".result.x.partial"),
+  fs::last_write_time(folder.path() / (key("old") + ".result.x.rebake-partial"),
                       fs::file_time_type::clock::now() - std::chrono::hours(2));
   // Files of others stay, also in a folder that the user chose.
-  for (const char* name : {"measure.partial", "scan.result"}) {
+  for (const char* name : {"measure.rebake-partial", "scan.result"}) {
     write_file_atomically(folder.path() / name, "mine", {});
     fs::last_write_time(folder.path() / name, fs::file_time_type::clock::now() - std::chrono::hours(2));
   }
   store.keep("k", "bytes");
-  for (const char* name : {"measure.partial", "scan.result"}) EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
-  EXPECT_FALSE(fs::exists(folder.path() / (key("old") + ".result.x.partial")));
-  EXPECT_TRUE(fs::exists(folder.path() / (key("new") + ".result.x.partial"))) << "another process may be writing it";
+  for (const char* name : {"measure.rebake-partial", "scan.result"})
+    EXPECT_TRUE(fs::exists(folder.path() / name)) << name;
+  EXPECT_FALSE(fs::exists(folder.path() / (key("old") + ".result.x.rebake-partial")));
+  EXPECT_TRUE(fs::exists(folder.path() / (key("new") + ".result.x.rebake-partial")))
+      << "another process may be writing it";
 }
 
 TEST(ResultStore, IgnoresUnwritableFolder) {

@@ -128,23 +128,51 @@ TEST(Files, DoesNotReplaceTheCurrentFolder) {
 
 TEST(Files, RemovesOnlyLeftoversOfKilledWrites) {
   const TemporaryFolder folder;
-  fs::create_directory(folder.path() / ".out.01234567.partial");
-  write_text(folder.path() / ".out.01234567.partial" / "mlp.json", "half");
-  write_text(folder.path() / "note.89abcdef.partial", "half");
-  for (const char* kept : {"note.txt.partial", "out.0123.partial", ".other.01234567.partial"})
+  fs::create_directory(folder.path() / ".out.01234567.rebake-partial");
+  write_text(folder.path() / ".out.01234567.rebake-partial" / "mlp.json", "half");
+  write_text(folder.path() / "note.89abcdef.rebake-partial", "half");
+  for (const char* kept : {"note.txt.rebake-partial", "out.0123.rebake-partial", ".other.01234567.rebake-partial"})
     write_text(folder.path() / kept, "mine");
   export_scene(scene_of(made_object()), folder.path() / "out", {});
   write_file_atomically(folder.path() / "note", "whole", {});
-  EXPECT_FALSE(fs::exists(folder.path() / ".out.01234567.partial"));
-  EXPECT_FALSE(fs::exists(folder.path() / "note.89abcdef.partial"));
-  for (const char* kept : {"note.txt.partial", "out.0123.partial", ".other.01234567.partial"})
+  EXPECT_FALSE(fs::exists(folder.path() / ".out.01234567.rebake-partial"));
+  EXPECT_FALSE(fs::exists(folder.path() / "note.89abcdef.rebake-partial"));
+  for (const char* kept : {"note.txt.rebake-partial", "out.0123.rebake-partial", ".other.01234567.rebake-partial"})
     EXPECT_TRUE(fs::exists(folder.path() / kept)) << kept;
+}
+
+// Download programs write parts of such names.
+TEST(Files, KeepsPartsOfOtherPrograms) {
+  const TemporaryFolder folder;
+  for (const char* name : {"note.1a2b3c4d.partial", ".out.1a2b3c4d.partial"})
+    write_text(folder.path() / name, "theirs");
+  write_file_atomically(folder.path() / "note", "whole", {});
+  export_scene(scene_of(made_object()), folder.path() / "out", {});
+  for (const char* name : {"note.1a2b3c4d.partial", ".out.1a2b3c4d.partial"})
+    EXPECT_EQ(read_file(folder.path() / name), "theirs");
+}
+
+// The disk of its target may not be mounted.
+TEST(Files, KeepsLinksToNothing) {
+  const TemporaryFolder folder;
+  for (const char* target : {"/nowhere/note", "note"}) {
+    fs::create_symlink(target, folder.path() / "link");
+    try {
+      write_file_atomically(folder.path() / "link", "whole", {});
+      FAIL() << target;
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find("is a link to a file that does not exist"), std::string::npos);
+    }
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
+    fs::remove(folder.path() / "link");
+  }
 }
 
 // A user may open a leftover as a source to recover it: an export must not remove it then.
 TEST(Files, KeepsLeftoversThatAreSources) {
   const TemporaryFolder folder;
-  const fs::path leftover = folder.path() / ".out.01234567.partial", file = folder.path() / "note.89abcdef.partial";
+  const fs::path leftover = folder.path() / ".out.01234567.rebake-partial",
+                 file = folder.path() / "note.89abcdef.rebake-partial";
   fs::create_directory(leftover);
   write_text(leftover / "mlp.json", "a source");
   write_text(file, "a camera");

@@ -1,10 +1,13 @@
 // Holes that removed triangles leave: borders, patches, and the features that continue.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <random>
 
 #include "editor/edits/edit.h"
+#include "editor/edits/shape/fill_holes.h"
+#include "editor/edits/shape/fill_report.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/fill/filled_holes.h"
 #include "mesh_ops/fill/hole_patch.h"
@@ -54,6 +57,49 @@ TEST(FillHoles, SurfacesContinueSmoothly) {
     const HoleLoops border = hole_loops(*filled.object, patch, 1e-6);
     ASSERT_EQ(border.loops.size(), 1U);
     EXPECT_EQ(border.loops[0].points.size(), hole_loops(*object, removed, 1e-6).loops[0].points.size());
+  }
+}
+
+// Every hole that stays open is counted under its reason.
+TEST(FillHoles, SaysWhyHolesStayOpen) {
+  const auto whole = ball();
+  TriangleSet gone = near_point(*whole, {0, 0, 1}, 0.5);
+  const TriangleSet other = near_point(*whole, {1, 0, 0}, 0.15);
+  const std::size_t large = hole_loops(*whole, gone, 1e-6).loops.front().points.size(),
+                    small = hole_loops(*whole, other, 1e-6).loops.front().points.size();
+  ASSERT_LT(small, large);
+  for (std::size_t f = 0; f < gone.size(); ++f) gone[f] |= other[f];
+  BakedObject open = *whole;
+  open.sets[0].soup = subset(whole->sets[0].soup, gone, 0, false);
+  const TriangleSet all(open.triangle_count(), 1);
+  const FilledHoles one = filled_open_holes(open, all, small);
+  EXPECT_EQ(one.holes, 1U);
+  EXPECT_EQ(one.longer, 1U);
+  EXPECT_EQ(unfilled_words(one, small), fmt::format("1 has more than {} edges (raise longest)", small));
+  EXPECT_EQ(filled_open_holes(open, all, large).unfilled(), 0U);
+  const FilledHoles most = filled_open_holes(open, all, small - 1);
+  EXPECT_EQ(most.longer, 2U);
+  // Without UVs, raising the limit does not help.
+  BakedObject plain = open;
+  const Soup& soup = open.sets[0].soup;
+  plain.sets[0].soup = Soup(soup.positions(), std::vector<Vec2>(soup.uvs().size(), Vec2(0.5, 0.5)), soup.faces());
+  const FilledHoles none = filled_open_holes(plain, all, small);
+  EXPECT_EQ(none.holes, 0U);
+  EXPECT_EQ(none.longer, 1U);
+  EXPECT_EQ(none.untextured, 1U);
+  EXPECT_EQ(unfilled_words(none, small),
+            fmt::format("1 has more than {} edges (raise longest), 1 has no opaque texels around", small));
+  Node node;
+  node.object = std::make_shared<const BakedObject>(plain);
+  node.selection = std::make_shared<const TriangleSet>(all);
+  FillHoles edit;
+  edit.longest = 2000;
+  try {
+    apply(with_added({}, node, NodeId::none, 0), Edit(edit));
+    FAIL();
+  } catch (const EditError& error) {
+    EXPECT_NE(std::string(error.what()).find("2 borders stay open: 2 have no opaque texels around"), std::string::npos)
+        << error.what();
   }
 }
 

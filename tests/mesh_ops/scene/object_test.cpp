@@ -26,6 +26,15 @@ TEST(SharedTotals, CountEachTextureAndArrayOnce) {
   EXPECT_EQ(totals.opaque_texels(), object->opaque_texel_count());
   EXPECT_GT(totals.memory(), object->memory());
   EXPECT_LT(totals.memory(), object->memory() + part.memory());
+  // An edited copy shares all tiles but one.
+  BakedObject erased = *object;
+  FeatureTexture::Change change(*object->sets[0].texels);
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x) change.at(x, y) = empty_texel(object->sets[0].texels->alpha_code());
+  erased.sets[0].texels = change.finish();
+  totals.add(erased);
+  EXPECT_GT(totals.opaque_texels(), object->opaque_texel_count());
+  EXPECT_LT(totals.opaque_texels(), object->opaque_texel_count() + erased.opaque_texel_count());
   SharedTotals alone;
   alone.add(part);
   EXPECT_EQ(alone.memory(), part.memory());

@@ -32,6 +32,26 @@ TEST_F(Titles, NameNodesWithSelectedTriangles) {
   EXPECT_EQ(title_after(R"({"op": "delete"})"), "Deleted 256 triangles of b");
 }
 
+// Also where the selection was so before.
+TEST_F(Titles, CountAllThatASelectionHolds) {
+  const auto half = [](const std::string& more) {
+    return R"({"op": "select", "half_space": {"point": [0, 0, 0], "normal": [0, 1, 0]})" + more + "}";
+  };
+  EXPECT_EQ(title_after(half(R"(, "node": "a")").c_str()), "Selected 128 triangles in a");
+  EXPECT_EQ(title_after(half("").c_str()), "Selected 256 triangles in a and b (+128)");
+  EXPECT_EQ(title_after(R"({"op": "select", "node": "b", "all": true})"), "Selected 256 triangles in b (+128)");
+  EXPECT_EQ(title_after(R"({"op": "select", "node": "b", "mode": "remove", "all": true})"),
+            "Deselected 256 triangles in b");
+  EXPECT_EQ(title_after(half("").c_str()), "Selected 256 triangles in a and b (+128)");
+}
+
+TEST_F(Titles, DoNotTakeRemovedNodesForTheSelection) {
+  act(document_, R"({"op": "hide", "node": "b"})");
+  const std::vector<Edit> hidden = {document_.history().edits().back()};
+  act(document_, R"({"op": "remove", "node": "b"})");
+  EXPECT_EQ(title_of(hidden, document_.scene()), "Hid what was removed later");
+}
+
 TEST_F(Titles, CountTrianglesThatDeformationsMoved) {
   act(document_, R"({"op": "select", "node": "b", "box": {"min": [0, 0.5, 0], "max": [1, 1, 1]}, "frame": "bounds"})");
   EXPECT_EQ(title_after(R"({"op": "bend", "node": "b", "degrees": 20})"), "Bent by 20°: b");
