@@ -10,6 +10,7 @@
 #include "editor/actions/lit.h"
 #include "editor/actions/views.h"
 #include "editor/document/replaced_work.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
 #include "mesh_ops/formats/cameras/photo_names.h"
@@ -203,7 +204,7 @@ void run(Session& session, const ComparePhotographsAction& action) {
     ssim += row.errors.ssim / static_cast<double>(rows.size());
     flip += row.errors.flip / static_cast<double>(rows.size());
   }
-  session.say(fmt::format("mean of {} photographs{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f}", rows.size(),
+  session.say(fmt::format("mean of {}{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f}", counted(rows.size(), "photograph"),
                           action.gain ? " after a gain per channel" : "", psnr, ssim, flip));
   if (!action.out.empty()) {
     write_file_atomically(fs::path(action.out) / table_name, table_of(rows), sources);

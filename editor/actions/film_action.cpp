@@ -110,7 +110,7 @@ class Film {
     PictureFolder folder(pictures, video_ ? ".png" : "." + action_.picture, frames_.size(), content(), video_,
                          sources_);
     if (folder.removed() > 0)
-      session_.say(fmt::format("note: {} of an earlier film in {} were replaced", counted(folder.removed(), "picture"),
+      session_.say(fmt::format("note: replaced {} of an earlier film in {}", counted(folder.removed(), "picture"),
                                pictures.string()));
     std::vector<bool> exists(frames_.size());
     for (std::size_t k = 0; k < frames_.size(); ++k) exists[k] = folder.has(k);
@@ -138,9 +138,11 @@ class Film {
     session_.outputs.push_back(action_.out);
     const std::string all = fmt::format("{} ({:.4g} s at {:.4g} per second)", counted(frames_.size(), "picture"),
                                         static_cast<double>(frames_.size()) / fps_, fps_);
-    session_.say(video_ || known == 0 ? fmt::format("wrote {} to {}", all, action_.out)
-                                      : fmt::format("wrote {} to {}, which has all {} now", counted(drawn, "picture"),
-                                                    action_.out, all));
+    if (video_ || known == 0)
+      session_.say(fmt::format("wrote {} to {}", all, action_.out));
+    else
+      session_.say(fmt::format("{}; {} holds the whole film now: {}",
+                               drawn == 0 ? "wrote nothing" : "wrote " + counted(drawn, "picture"), action_.out, all));
   }
 
  private:

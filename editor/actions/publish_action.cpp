@@ -58,7 +58,7 @@ bool is_page(const fs::path& file) {
 }
 
 // Throws FileError if someone has changed the files of a page since it was published. `index`: the page itself. Pages
-// of older versions have no hash, so changes of theirs cannot be told.
+// of earlier builds have no hash, which may mean that they were changed.
 void refuse_changed(const fs::path& page, const fs::path& index, const std::set<std::string>& names) {
   std::string text = read_file(index);
   const std::size_t at = text.find(hash_mark);

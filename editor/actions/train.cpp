@@ -192,7 +192,7 @@ void run(Session& session, const TrainAction& action, const TrainingObserver& ob
   Scene scene = with_added({}, node, NodeId::none, 0);
   scene.background = training.frame().background;
   const SourceGuard sources = sources_of(session, observer);
-  if (before.has_other_content() || (before.had_content() && !observer.may_replace))
+  if (before.has_other_content() || (!observer.may_replace && before.has_content()))
     throw FileError(out,
                     "was written by something else during the training; move it elsewhere, and train again with "
                     "the same options: the training is kept and goes on from here");

@@ -187,9 +187,9 @@ void run_lines(Session& session, const RunOptions& options, const std::string& s
                const std::map<std::string, std::string>& variables) {
   WrittenList list(session, options);
   std::optional<OutputState> before;
-  if (!options.out.empty()) before.emplace(options.out);
   const Contents at_start = options.files.empty() ? Contents() : contents_of(script, variables);
   try {
+    if (!options.out.empty()) before.emplace(options.out);
     session.after_line = [&list] { list.update(); };
     run_script(session, script, options.script, variables);
     session.after_line = nullptr;

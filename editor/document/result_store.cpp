@@ -86,7 +86,7 @@ void ResultStore::evict_to_limit() const {
     // A temporary file of a killed program: no write takes an hour.
     const std::string name = entry.path().filename().string();
     if (!is_own_name(name.substr(0, name.find('.')))) continue;
-    if (!gone && entry.path().extension() == ".rebake-partial" &&
+    if (!gone && (entry.path().extension() == ".rebake-partial" || entry.path().extension() == ".partial") &&
         fs::file_time_type::clock::now() - used > std::chrono::hours(1))
       fs::remove(entry.path(), gone);
     if (entry.path().extension() != extension) continue;

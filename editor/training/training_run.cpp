@@ -26,12 +26,10 @@ constexpr const char *checkpoint_name = "rebake-checkpoint", *preview_name = "re
 constexpr const char* table_header = "steps,seconds,PSNR of training pixels dB\n";
 constexpr int preview_side = 96;  // pixels at most: it must take less than a second
 
-// Whether an entry of a work folder is a file that a training made there: by its name and how it begins, and no link to
-// another file.
-bool is_own(const fs::directory_entry& entry) {
+// Whether a file of a work folder has the name and the beginning of one that a training made there.
+bool has_own_content(const fs::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
   std::error_code error;
-  if (entry.is_symlink(error) || (entry.is_regular_file(error) && entry.hard_link_count(error) > 1)) return false;
   const char* const own[] = {checkpoint_name, preview_name, table_name, lock_name};
   if (std::none_of(std::begin(own), std::end(own),
                    [&](const char* one) { return name == one || is_partial_of(name, one); }))
@@ -44,10 +42,18 @@ bool is_own(const fs::directory_entry& entry) {
   return name == checkpoint_name && is_checkpoint(entry.path());
 }
 
-// Throws FileError if something else was put there during the training.
+// Whether an entry of a work folder is a file that a training made there, and no link to another file.
+bool is_own(const fs::directory_entry& entry) {
+  std::error_code error;
+  if (entry.is_symlink(error) || (entry.is_regular_file(error) && entry.hard_link_count(error) > 1)) return false;
+  return has_own_content(entry);
+}
+
+// Throws FileError if something else was put there during the training. Hard links are copies of backups: writing
+// leaves the others as they are.
 void refuse_foreign(const fs::path& file) {
   std::error_code error;
-  if (fs::exists(fs::symlink_status(file, error)) && !is_own(fs::directory_entry(file, error)))
+  if (fs::is_symlink(file, error) || (fs::exists(file, error) && !has_own_content(fs::directory_entry(file, error))))
     throw FileError(file, "is not what the training wrote there, so it is kept");
 }
 
@@ -190,6 +196,16 @@ bool TrainingRun::write_state() {
   }
 }
 
+// Writes a file that the training does not need. Says each problem once.
+void TrainingRun::write_or_warn(const char* name, const std::function<void(const fs::path&)>& write) {
+  try {
+    refuse_foreign(work_ / name);
+    write(work_ / name);
+  } catch (const FileError& error) {
+    if (warned_.insert(error.what()).second) say_(fmt::format("warning: {}", error.what()));
+  }
+}
+
 // A row of the table, and a picture of the scene beside a photograph.
 void TrainingRun::show_progress(double mean_error, const Progress& progress) {
   rows_.push_back({static_cast<double>(reconstruction_->steps_done()), seconds(), decibels_of(mean_error)});
@@ -197,16 +213,12 @@ void TrainingRun::show_progress(double mean_error, const Progress& progress) {
   for (const auto& [steps, seconds, psnr] : rows_) table += fmt::format("{:.0f},{:.1f},{:.3f}\n", steps, seconds, psnr);
   const FitPhotograph photograph = reduced(reconstruction_->views().photographs().front(), preview_side);
   const Image wanted{photograph.width, photograph.height, photograph.rgb, {}};
-  try {
-    refuse_foreign(work_ / table_name);
-    write_file_atomically(work_ / table_name, table, {});
-    refuse_foreign(work_ / preview_name);
+  write_or_warn(table_name, [&](const fs::path& file) { write_file_atomically(file, table, {}); });
+  write_or_warn(preview_name, [&](const fs::path& file) {
     write_picture(
-        contact_sheet({wanted, trained_picture(*reconstruction_, photograph, progress)}, 2, 4, {128, 128, 128}),
-        work_ / preview_name, {});
-  } catch (const FileError& error) {
-    say_(fmt::format("warning: {}", error.what()));
-  }
+        contact_sheet({wanted, trained_picture(*reconstruction_, photograph, progress)}, 2, 4, {128, 128, 128}), file,
+        {});
+  });
   if (watch) watch(*this, progress);
 }
 

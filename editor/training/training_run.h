@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <set>
 
 #include "editor/training/reconstruction_options.h"
 #include "mesh_ops/base/file_lock.h"
@@ -65,6 +66,7 @@ class TrainingRun {
   void advance(Loop& loop, const Progress& progress);
   bool write_state();
   void show_progress(double mean_error, const Progress& progress);
+  void write_or_warn(const char* name, const std::function<void(const std::filesystem::path&)>& write);
 
   ReconstructionOptions options_;
   Capture capture_;
@@ -75,8 +77,9 @@ class TrainingRun {
   std::unique_ptr<FileLock> lock_;
   std::unique_ptr<Reconstruction> reconstruction_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  double seconds_before_ = 0;  // time of training in interrupted runs
-  std::string problem_;        // why the last checkpoint could not be written; empty: it was written
+  double seconds_before_ = 0;     // time of training in interrupted runs
+  std::set<std::string> warned_;  // problems that were said
+  std::string problem_;           // why the last checkpoint could not be written; empty: it was written
   std::vector<std::array<double, 3>> rows_;
 };
 

@@ -301,9 +301,10 @@ void sync_folder(const fs::path& folder) {
 void refuse_dangling_link(const fs::path& path) {
   std::error_code error;
   if (fs::is_symlink(path, error) && !fs::exists(path, error))
-    throw FileError(path,
-                    "is a link to a file that does not exist, for example on a disk that is not mounted; remove the "
-                    "link, or name another file");
+    throw FileError(
+        path,
+        "is a link to a file or folder that does not exist, for example on a disk that is not mounted; remove the "
+        "link, or name another file");
 }
 
 // A rename checks only the folder's permission, so the file's own is checked here. The mode bits count too, because the
@@ -373,6 +374,7 @@ AtomicFolder::AtomicFolder(const fs::path& target, const SourceGuard& guard,
   if (target.empty()) throw FieldError("out", "is empty; name a folder to write to");
   guard.check_folder(target);
   check_parents(target);
+  refuse_dangling_link(target);
   target_ = followed(target);
   std::error_code error;
   if (fs::exists(target_, error)) {

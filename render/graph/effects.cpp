@@ -1,7 +1,8 @@
 #include "render/graph/effects.h"
-#include "mesh_ops/base/counted.h"
 
 #include <fmt/format.h>
+
+#include "mesh_ops/base/counted.h"
 
 namespace rebake {
 

@@ -49,7 +49,7 @@ Outcome apply(const Scene& scene, const ImportViews& edit) {
   }
   for (std::string& line : report.lines) line = fmt::format("warning: {}: {}", edit.path, line);
   report.lines.push_back(fmt::format("stored {}", counted(views.size(), "view")) +
-                         (replaced > 0 ? fmt::format(", of which {} replaced views of the same name", replaced) : ""));
+                         (replaced > 0 ? fmt::format(", {} in place of views of the same name", replaced) : ""));
   return {std::move(result), std::move(report)};
 }
 

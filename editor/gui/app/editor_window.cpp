@@ -171,10 +171,11 @@ class EditorWindow {
   void save_changed_settings() {
     editor_.settings.window_width = static_cast<int>(std::lround(window().width() / window().scale()));
     editor_.settings.window_height = static_cast<int>(std::lround(window().height() / window().scale()));
-    if (editor_.settings == saved_settings_ || ImGui::IsAnyMouseDown()) return;
-    const Settings known = std::exchange(saved_settings_, editor_.settings);
+    if (editor_.settings == tried_settings_ || ImGui::IsAnyMouseDown()) return;
+    tried_settings_ = editor_.settings;
     try {
-      write_settings(saved_settings_, known, settings_file_);
+      write_settings(tried_settings_, saved_settings_, settings_file_);
+      saved_settings_ = tried_settings_;
     } catch (const Error& error) {
       editor_.messages.fail(error.what());
     }
@@ -329,7 +330,8 @@ class EditorWindow {
 
   fs::path settings_file_;
   std::string settings_problem_;
-  Settings saved_settings_;  ///< settings as last written to disk
+  Settings saved_settings_;                    ///< settings as last written to disk
+  Settings tried_settings_ = saved_settings_;  ///< settings that were written last, or could not be
   WindowSystem system_;
   Tools tools_;
   std::unique_ptr<Graphics> graphics_;

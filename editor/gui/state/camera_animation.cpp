@@ -96,7 +96,7 @@ std::string CameraAnimation::run_step(const std::function<void(const Camera&, co
 
 std::string CameraAnimation::stopped() const {
   if (video()) return "Cancelled: no video was written";
-  return fmt::format("Cancelled: {} of {} pictures were written to {}", next_, cameras_.size(), out_.string());
+  return fmt::format("Cancelled: wrote {} of {} to {}", next_, counted(cameras_.size(), "picture"), out_.string());
 }
 
 }  // namespace rebake

@@ -123,8 +123,9 @@ struct DocumentEditor {
   /// World box of the picked nodes; of everything visible if nothing is picked.
   Box focus() const;
   /// Targets of deformation tools, one edit per target: the selected triangles in scope(), else the picked nodes with
-  /// visible, unlocked objects (the only such root if nothing is picked). Empty if there is none.
-  std::vector<DeformTarget> deform_targets() const;
+  /// visible, unlocked objects (the only such root if nothing is picked). Empty if there is none. `moved` gets the
+  /// nodes whose triangles would move.
+  std::vector<DeformTarget> deform_targets(std::set<NodeId>* moved = nullptr) const;
   /// The target of a tool that makes one edit: that of deform_targets(), or all selected triangles of the scene if
   /// those are the targets. Nothing, and a message, if there is no target or several that one edit cannot name.
   std::optional<DeformTarget> one_deform_target();

@@ -113,7 +113,7 @@ std::string DocumentEditor::scope_words() const {
   return only ? "in " + only->name : fmt::format("in {} picked", active.size());
 }
 
-std::vector<DeformTarget> DocumentEditor::deform_targets() const {
+std::vector<DeformTarget> DocumentEditor::deform_targets(std::set<NodeId>* moved) const {
   std::vector<DeformTarget> targets;
   const auto nodes = scope(true);
   if (selected_triangles() > 0)
@@ -122,7 +122,11 @@ std::vector<DeformTarget> DocumentEditor::deform_targets() const {
       targets.back().node = node;
       targets.back().selection = true;
     }
-  if (!targets.empty()) return targets;
+  if (!targets.empty()) {
+    if (moved != nullptr) *moved = nodes_in_scope(true);
+    return targets;
+  }
+  std::set<NodeId> inside;
   std::map<NodeId, NodeId> top_of;  // picked nodes, or roots, of the nodes inside them
   for (const PlacedNode& placed : placed_nodes(scene())) {
     const NodeId id = placed.node->id;
@@ -130,12 +134,14 @@ std::vector<DeformTarget> DocumentEditor::deform_targets() const {
     const NodeId top = top_of.try_emplace(id, id).first->second;
     for (const NodePtr& child : placed.node->children) top_of[child->id] = top;
     if (!placed.node->object || !placed.visible || placed.locked) continue;
+    inside.insert(id);
     if (!targets.empty() && targets.back().node->id == top) continue;
     targets.emplace_back();
     targets.back().node = NodeRef{top};
   }
-  // Which of several nodes is meant, nobody has said.
+  // Do not guess among several nodes.
   if (active.empty() && targets.size() > 1) targets.clear();
+  if (moved != nullptr && !targets.empty()) *moved = std::move(inside);
   return targets;
 }
 
@@ -153,29 +159,20 @@ std::optional<DeformTarget> DocumentEditor::one_deform_target() {
   std::size_t all = 0;
   for (const PlacedNode& placed : placed_nodes(scene()))
     if (placed.node->object && placed.visible && !placed.locked && selected_.contains(placed.node->id)) ++all;
-  if (all == targets.size()) {
+  if (targets.front().selection && all == targets.size()) {
     DeformTarget everything = targets.front();
     everything.node.reset();
     return everything;
   }
-  messages.say("This tool works on one picked node, or on all selected triangles. Pick one node, or none.");
+  messages.say(targets.front().selection
+                   ? "This tool works on one picked node, or on all selected triangles. Pick one node, or none."
+                   : "This tool works on one node with what is inside it. Pick one node.");
   return std::nullopt;
 }
 
 std::set<NodeId> DocumentEditor::deform_nodes() const {
   std::set<NodeId> nodes;
-  for (const DeformTarget& target : deform_targets()) {
-    if (target.node && target.selection) {
-      nodes.insert(target.node->id);
-      continue;
-    }
-    for (const PlacedNode& placed : placed_nodes(scene())) {
-      const Node& node = *placed.node;
-      if (!node.object || !placed.visible || placed.locked) continue;
-      if (target.node ? is_picked({target.node->id}, scene(), node.id) : node.selection && count(*node.selection) > 0)
-        nodes.insert(node.id);
-    }
-  }
+  deform_targets(&nodes);
   return nodes;
 }
 

@@ -89,8 +89,8 @@ Settings read_settings(const fs::path& file, std::string& problem) {
     return settings;
   } catch (const std::exception& error) {
     problem = fmt::format(
-        "{}: cannot be read, so default settings are used ({}). Correct it now, or later as {}.unreadable, "
-        "to which it is renamed when settings change",
+        "{0}: cannot be read, so default settings are used: {1}. With the next change of a setting, it is renamed to "
+        "{2}.unreadable; correct it there and name it {2} again",
         file.string(), error.what(), file.filename().string());
     return {};
   }
@@ -114,12 +114,15 @@ void write_settings(const Settings& settings, const Settings& known, const fs::p
   std::error_code error;
   fs::create_directories(file.parent_path(), error);
   if (error) throw FileError(file.parent_path(), "cannot be created: " + error.message());
+  json object, before;
   try {
     keep_unreadable(file);
+    object = fs::exists(file) ? json::parse(read_file(file)) : json::object();
   } catch (const fs::filesystem_error& failed) {
     throw FileError(file, std::string("cannot be read, nor renamed: ") + failed.code().message());
+  } catch (const json::exception&) {
+    throw FileError(file, "is being written by another program; settings will be saved with the next change");
   }
-  json object = fs::exists(file) ? json::parse(read_file(file)) : json::object(), before;
   for_fields(known, [&](const char* name, const auto& value) { before[name] = value; });
   for_fields(settings, [&](const char* name, const auto& value) {
     if (const json now = value; !object.contains(name) || before.at(name) != now) object[name] = now;

@@ -39,10 +39,13 @@ bool is_part(const Edit& edit) {
 
 // Adds the nodes that selecting edits work on and whose selection they leave as it was: it counts with the others.
 void add_unchanged(SceneChange& change, const std::vector<Edit>& group, const Scene& before, const Scene& after) {
-  std::set<NodeId> inside;  // the named nodes with their children; none: all nodes
-  for (const Edit& edit : group)
-    for (const NodeId id : edit.type().named_nodes(edit.value())) inside.insert(id);
-  const bool all = inside.empty();
+  std::set<NodeId> inside;  // the named nodes with their children
+  bool all = false;
+  for (const Edit& edit : group) {
+    const std::vector<NodeId> named = edit.type().named_nodes(edit.value());
+    inside.insert(named.begin(), named.end());
+    all = all || named.empty();
+  }
   std::map<NodeId, NodePtr> was;
   for (const PlacedNode& placed : placed_nodes(before)) was[placed.node->id] = placed.node;
   std::vector<std::string> names;
@@ -113,7 +116,7 @@ std::string title_of(const std::vector<Edit>& group, const Scene& later) {
   // Nodes that are named but not there any more were removed later.
   const bool named_some = std::any_of(group.begin(), group.end(),
                                       [](const Edit& edit) { return !edit.type().named_nodes(edit.value()).empty(); });
-  return first.type().done(first.value()) + (named_some ? " what was removed later" : " the selection");
+  return first.type().done(first.value()) + (named_some ? " a node that was removed later" : " the selection");
 }
 
 }  // namespace rebake

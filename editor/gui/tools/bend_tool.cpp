@@ -64,8 +64,8 @@ std::function<Deformed(const Vec3&)> deformation_along(const Edit& edit, const S
 
 BendTool::SpineInputs BendTool::current_inputs(const ToolContext& editor) const {
   SpineInputs found{axis_, false, {}};
-  for (const DeformTarget& target : editor.deform_targets()) found.selection = target.selection;
-  const std::set<NodeId> nodes = editor.deform_nodes();
+  std::set<NodeId> nodes;
+  for (const DeformTarget& target : editor.deform_targets(&nodes)) found.selection = target.selection;
   for (const PlacedNode& placed : placed_nodes(editor.scene()))
     if (nodes.contains(placed.node->id)) found.nodes.push_back(placed.node);
   return found;

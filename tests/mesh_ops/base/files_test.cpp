@@ -161,8 +161,10 @@ TEST(Files, KeepsLinksToNothing) {
       write_file_atomically(folder.path() / "link", "whole", {});
       FAIL() << target;
     } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find("is a link to a file that does not exist"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("is a link to a file or folder that does not exist"), std::string::npos);
     }
+    EXPECT_THROW(export_scene(scene_of(made_object()), folder.path() / "link", {}), FileError);
+    EXPECT_THROW(check_can_export(folder.path() / "link", {}), FileError);
     EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
     fs::remove(folder.path() / "link");
   }

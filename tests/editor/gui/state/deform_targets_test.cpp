@@ -6,6 +6,7 @@
 #include "editor/edits/nodes/group.h"
 #include "editor/edits/nodes/hide.h"
 #include "editor/edits/nodes/transform.h"
+#include "editor/edits/select/select.h"
 #include "editor/gui/state/commands.h"
 #include "mesh_ops/formats/export.h"
 #include "tests/support/window_state.h"
@@ -36,6 +37,20 @@ TEST_F(DeformTargets, AreAllPickedNodesWithWhatIsInsideThem) {
   EXPECT_EQ(targets(), (std::vector{id("a"), id("c")}));
   EXPECT_EQ(editor->deform_nodes(), (std::set{id("a"), id("c")}));
   EXPECT_FALSE(editor->one_deform_target()) << "a cage has one node";
+  // Selections elsewhere do not count.
+  Select all;
+  all.all = true;
+  editor->active = {id("b")};
+  editor->edit_scope(all);
+  wait();
+  editor->active = {id("a"), id("c")};
+  EXPECT_FALSE(editor->one_deform_target());
+  EXPECT_EQ(editor->messages.log().back().text, "This tool works on one node with what is inside it. Pick one node.");
+  editor->active.clear();
+  EXPECT_EQ(editor->deform_nodes(), std::set{id("b")}) << "the only one with selected triangles";
+  all.mode = SelectMode::remove;
+  editor->edit_scope(all);
+  wait();
   Group group;
   group.nodes = {NodeRef{id("a")}, NodeRef{id("b")}};
   group.as = "plants";

@@ -49,7 +49,7 @@ TEST_F(Titles, DoNotTakeRemovedNodesForTheSelection) {
   act(document_, R"({"op": "hide", "node": "b"})");
   const std::vector<Edit> hidden = {document_.history().edits().back()};
   act(document_, R"({"op": "remove", "node": "b"})");
-  EXPECT_EQ(title_of(hidden, document_.scene()), "Hid what was removed later");
+  EXPECT_EQ(title_of(hidden, document_.scene()), "Hid a node that was removed later");
 }
 
 TEST_F(Titles, CountTrianglesThatDeformationsMoved) {
