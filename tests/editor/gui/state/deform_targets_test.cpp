@@ -17,7 +17,7 @@ namespace {
 class DeformTargets : public WindowState {
  protected:
   DeformTargets() {
-    for (const char* name : {"a", "b", "c"}) {
+    for (const char* name : {"a", "b", "c", "d"}) {
       export_scene(scene_of(made_object({.columns = 8, .rows = 4})), home.path() / name, {});
       editor->project.open({(home.path() / name).string()});
     }
@@ -40,14 +40,14 @@ TEST_F(DeformTargets, AreAllPickedNodesWithWhatIsInsideThem) {
   // Selections elsewhere do not count.
   Select all;
   all.all = true;
-  editor->active = {id("b")};
+  editor->active = {id("b"), id("d")};
   editor->edit_scope(all);
   wait();
   editor->active = {id("a"), id("c")};
   EXPECT_FALSE(editor->one_deform_target());
   EXPECT_EQ(editor->messages.log().back().text, "This tool works on one node with what is inside it. Pick one node.");
   editor->active.clear();
-  EXPECT_EQ(editor->deform_nodes(), std::set{id("b")}) << "the only one with selected triangles";
+  EXPECT_EQ(editor->deform_nodes(), (std::set{id("b"), id("d")})) << "those with selected triangles";
   all.mode = SelectMode::remove;
   editor->edit_scope(all);
   wait();
@@ -72,7 +72,7 @@ TEST_F(DeformTargets, AreNotGuessedIfNothingIsPicked) {
   EXPECT_FALSE(editor->one_deform_target());
   EXPECT_EQ(editor->messages.log().back().text,
             "There are several objects. Pick the one to deform, or select triangles.");
-  editor->edits({Hide{{id("a")}}, Hide{{id("b")}}});
+  editor->edits({Hide{{id("a")}}, Hide{{id("b")}}, Hide{{id("d")}}});
   wait();
   EXPECT_EQ(targets(), std::vector{id("c")}) << "the only visible one";
 }
