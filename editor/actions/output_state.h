@@ -6,7 +6,7 @@
 
 namespace rebake {
 
-/// Remembers what is at the path of an output before long work, to notice what another program writes there meanwhile.
+/// Detects that another program writes to the path of an output during long work.
 class OutputState {
  public:
   /// Reads the files there. Throws FileError.

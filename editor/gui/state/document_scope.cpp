@@ -166,7 +166,7 @@ std::optional<DeformTarget> DocumentEditor::one_deform_target() {
   }
   messages.say(targets.front().selection
                    ? "This tool works on one picked node, or on all selected triangles. Pick one node, or none."
-                   : "This tool works on one node with what is inside it. Pick one node.");
+                   : "This tool deforms one node and its children. Pick one node.");
   return std::nullopt;
 }
 

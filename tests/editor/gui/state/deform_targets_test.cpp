@@ -45,7 +45,7 @@ TEST_F(DeformTargets, AreAllPickedNodesWithWhatIsInsideThem) {
   wait();
   editor->active = {id("a"), id("c")};
   EXPECT_FALSE(editor->one_deform_target());
-  EXPECT_EQ(editor->messages.log().back().text, "This tool works on one node with what is inside it. Pick one node.");
+  EXPECT_EQ(editor->messages.log().back().text, "This tool deforms one node and its children. Pick one node.");
   editor->active.clear();
   EXPECT_EQ(editor->deform_nodes(), (std::set{id("b"), id("d")})) << "those with selected triangles";
   all.mode = SelectMode::remove;
