@@ -70,13 +70,18 @@ void report_loss(Session& session, const Scene& scene, const Scene& other, const
   }
 }
 
-// Number of different decoders of the visible objects.
-std::size_t decoders_of(const Scene& scene) {
-  std::vector<const Decoder*> found;
+// Number of folders that the visible objects need if none is rotated: one for each decoder, and for each file layout
+// unless all get the same.
+std::size_t folders_without_rotations(const Scene& scene, bool one_layout) {
+  std::vector<const BakedObject*> found;
+  const auto same_folder = [&](const BakedObject& a, const BakedObject& b) {
+    return *a.decoder == *b.decoder && (one_layout || a.layout == b.layout);
+  };
   for (const PlacedNode& placed : placed_nodes(scene))
-    if (placed.visible && placed.node->object &&
-        std::none_of(found.begin(), found.end(), [&](const Decoder* d) { return *d == *placed.node->object->decoder; }))
-      found.push_back(placed.node->object->decoder.get());
+    if (placed.visible && placed.node->object && std::none_of(found.begin(), found.end(), [&](const BakedObject* one) {
+          return same_folder(*one, *placed.node->object);
+        }))
+      found.push_back(placed.node->object.get());
   return found.size();
 }
 
@@ -109,7 +114,8 @@ void report_losses(Session& session, const Scene& scene, const ExportAction& act
     });
   // Within one decoder, samples are averaged before decoding; across decoders, after. So pixels differ at edges between
   // parts that were split because of different rotations.
-  if (!report.one_folder && bent.empty() && report.folders > decoders_of(scene))
+  if (!report.one_folder && bent.empty() &&
+      report.folders > folders_without_rotations(scene, action.layout.has_value()))
     report_loss(session, scene, read_any(action.out, Axes::y_up, session.progress), [](const PictureLoss& loss) {
       return fmt::format(
           "parts with different rotations now have separate decoders, so samples at their edges are averaged "

@@ -46,7 +46,7 @@ void refuse_replacing_cameras(const std::filesystem::path& path, const std::vect
   std::vector<std::string> notes;
   const std::vector<PhotoCamera> cameras = read_cameras(path, "", {}, notes);
   if (cameras.size() > names.size())
-    refuse(fmt::format("has {} cameras, more than the {} to be written", cameras.size(), names.size()));
+    refuse(fmt::format("has {}, more than the {} to be written", counted(cameras.size(), "camera"), names.size()));
   const bool same = std::all_of(cameras.begin(), cameras.end(), [&](const PhotoCamera& camera) {
     return std::find(names.begin(), names.end(), std::filesystem::path(camera.name).stem().string()) != names.end();
   });

@@ -6,6 +6,7 @@
 
 #include "editor/actions/views.h"
 #include "editor/edits/stored_view.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "render/contact_sheet.h"
 #include "render/panorama.h"
@@ -74,8 +75,8 @@ Image sheet_of_views(Renderer& renderer, const Scene& scene, const View& view, c
   if (names.empty()) throw FieldError("sheet", "the scene has no stored views; store some with the edit view");
   const std::size_t room = static_cast<std::size_t>(cells.width) * static_cast<std::size_t>(cells.height);
   if (names.size() > room)
-    throw FieldError("sheet",
-                     fmt::format("has room for {} pictures, but the scene has {} stored views", room, names.size()));
+    throw FieldError("sheet", fmt::format("has room for {}, but the scene has {}", counted(room, "picture"),
+                                          counted(names.size(), "stored view")));
   std::vector<Image> pictures;
   for (const std::string& name : names) {
     progress.at("rendering " + name, static_cast<double>(pictures.size()) / static_cast<double>(names.size()));

@@ -15,7 +15,9 @@
 #include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/export.h"
+#include "mesh_ops/formats/mobilenerf/baked_files.h"
 
 namespace rebake {
 
@@ -206,6 +208,7 @@ void run(Session& session, const TrainAction& action, const TrainingObserver& ob
                           duration_text(training.seconds())));
   nlohmann::json report = report_of(training, action, counts, *node.object);
   report["held out"] = judge(session, training, scene);
+  report["scene"] = hash_text(baked_hash(out));  // later runs replace the report with the scene if both are as written
   write_file_atomically(out / report_name, report.dump(1) + "\n", sources_of(session, observer));
   training.remove_work_files();
   session.say(fmt::format("wrote the scene to {}; its rebake_training.json has the plan and all figures", action.out));

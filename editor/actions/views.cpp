@@ -120,10 +120,21 @@ View resolve_view(const Scene& scene, const std::optional<Camera>& camera, const
   return view;
 }
 
+namespace {
+
+bool shows_background_only(const Image& picture, const Color& background) {
+  if (!picture.alpha.empty())
+    return std::all_of(picture.alpha.begin(), picture.alpha.end(), [](std::uint8_t alpha) { return alpha == 0; });
+  constexpr double rounding = 1.0 / 255;
+  for (std::size_t i = 0; i < picture.rgb.size(); ++i)
+    if (std::abs(picture.rgb[i] / 255.0 - background[static_cast<Eigen::Index>(i % 3)]) > rounding) return false;
+  return true;
+}
+
+}  // namespace
+
 std::optional<std::string> blank_reason(const Scene& scene, const View& view, const Image& picture) {
-  const auto& bytes = picture.rgb;
-  for (std::size_t i = 3; i < bytes.size(); ++i)
-    if (bytes[i] != bytes[i - 3]) return std::nullopt;
+  if (!shows_background_only(picture, scene.background)) return std::nullopt;
   const std::string nothing = "the picture is empty: ";
   Box box, seen;  // camera space (right, up, depth): all vertices, and those inside the picture's sides
   const Mat3 turn = world_to_camera(view.camera);

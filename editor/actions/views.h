@@ -22,7 +22,7 @@ Camera fitted(const Scene& scene, const Camera& camera, double aspect);
 View resolve_view(const Scene& scene, const std::optional<Camera>& camera, const std::string& view_name, int width,
                   int height, int samples);
 
-/// The reason why all pixels of a picture are equal, as a sentence for users; nothing if pixels differ.
+/// The reason why a picture shows only the background, as a sentence for users; nothing if it shows more.
 std::optional<std::string> blank_reason(const Scene& scene, const View& view, const Image& picture);
 
 }  // namespace rebake

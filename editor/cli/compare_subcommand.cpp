@@ -1,6 +1,7 @@
 #include "render/compare.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cmath>
 #include <memory>
@@ -27,10 +28,16 @@ struct Comparison {
   FolderOptions reading;
 };
 
+bool see_through(const Image& picture) {
+  return std::any_of(picture.alpha.begin(), picture.alpha.end(), [](std::uint8_t alpha) { return alpha < 255; });
+}
+
 void compare_pictures(const Comparison& options) {
   if (!options.photographs.out.empty()) throw FieldError("-o", "applies to --photos only");
   if (options.b.empty()) throw FieldError("b", "is missing: name a second picture, or photographs with --photos");
-  const Difference d = compare(read_image(options.a), read_image(options.b), options.tolerance);
+  const Image a = read_image(options.a, AlphaChannel::keep), b = read_image(options.b, AlphaChannel::keep);
+  if (see_through(a) || see_through(b)) write_stderr("note: only colours are compared, not opacity\n");
+  const Difference d = compare(a, b, options.tolerance);
   if (options.json) {
     nlohmann::json out = {{"ssim", d.ssim},
                           {"largest", d.largest},

@@ -19,9 +19,9 @@ using nlohmann::json;
 
 json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-// Geometry files that an object was read from, whatever edits left of it.
+// Geometry files that an object was read from, whatever edits left of it; 0 if it was made from others.
 std::size_t chunk_count(const BakedObject& object) {
-  if (!object.origin) return object.sets.size();
+  if (!object.origin) return 0;
   std::size_t total = 0;
   for (const Origin::Set& set : object.origin->sets) total += set.geometry.size();
   return total;

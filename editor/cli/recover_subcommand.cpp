@@ -10,6 +10,7 @@
 #include "editor/document/document.h"
 #include "editor/document/project.h"
 #include "editor/document/replaced_work.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 
@@ -93,13 +94,13 @@ void recover(Recovery options) {
   if (std::fflush(stdout) != 0 && !nothing)
     throw FileError(options.out, "is written, but standard output is not writable; the journal stays");
   if (undone > 0)
-    print_message(fmt::format(
-        "note: {} undone edits are not part of the project; the journal still holds them, so it stays", undone));
+    print_message(fmt::format("note: {} not part of the project; the journal still holds {}, so it stays",
+                              counted(undone, "undone edit is", "undone edits are"), undone == 1 ? "it" : "them"));
   if (recovered.skipped_undone > 0)
-    print_message(
-        fmt::format("note: {} undone edits were left out, because a source of theirs is missing or has changed; the "
-                    "journal still holds them, so it stays",
-                    recovered.skipped_undone));
+    print_message(fmt::format(
+        "note: {} left out, because a source is missing or has changed; the journal still holds {}, so it stays",
+        counted(recovered.skipped_undone, "undone edit was", "undone edits were"),
+        recovered.skipped_undone == 1 ? "it" : "them"));
   if (recovered.header_damaged)
     print_message("note: the journal's first line is damaged; all edits after it are intact");
   if (recovered.torn) print_message("note: the last edit is lost: the program ended while it was written");

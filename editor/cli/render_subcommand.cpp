@@ -251,11 +251,12 @@ void render(const Rendering& options) {
   }
   auto [scene, sources] = load_scenes(options.folders, options.reading, progress_bar());
   options.view.protect_files(sources);
-  for (const std::filesystem::path& file : files_of(options.content, options.out)) {
-    if (!options.out.empty()) check_picture_path(file, sources);
-    refuse_replacing_work(file);
-    refuse_replacing_unnamed(file, options.out);
-  }
+  if (!options.out.empty())
+    for (const std::filesystem::path& file : files_of(options.content, options.out)) {
+      check_picture_path(file, sources);
+      refuse_replacing_work(file);
+      refuse_replacing_unnamed(file, options.out);
+    }
   options.view.set_background(scene);
   if (options.at) scene = scene_at(scene, *options.at);
   const View view = options.view.view(scene);

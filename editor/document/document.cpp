@@ -7,6 +7,7 @@
 
 #include "editor/document/project.h"
 #include "editor/document/replaced_work.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
@@ -359,7 +360,8 @@ std::vector<std::string> Document::save(const fs::path& project, const Progress&
   const std::vector<std::string> after = before.empty() ? before : edits_in(project);
   if (const auto differs = std::mismatch(before.begin(), before.end(), after.begin(), after.end()).first;
       differs != before.end())
-    warnings.push_back(fmt::format("it replaced a project with {} other edits", before.end() - differs));
+    warnings.push_back("it replaced a project with " +
+                       counted(static_cast<std::size_t>(before.end() - differs), "other edit"));
   return warnings;
 }
 

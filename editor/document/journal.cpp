@@ -136,6 +136,7 @@ class Journal::File {
     if (!is_in_place() || size() != (torn_ ? torn_->bytes : end_))
       throw FileError(
           path_, "was removed, replaced or changed by another program, so it no longer protects this work; save now");
+    leave_other_names();
     mend();
     std::string lines;
     std::uint64_t next = next_;
@@ -160,6 +161,16 @@ class Journal::File {
     bool begun;           // has its first line
     bool ends_in_newline;
   };
+
+  // Another hard link of the file is a copy, as of a backup, and keeps its content.
+  void leave_other_names() {
+    struct stat about {};
+    if (::fstat(descriptor_.value, &about) != 0 || about.st_nlink < 2) return;
+    write_file_atomically(path_, read_file(path_), {});
+    Descriptor own(open(path_, O_RDWR));
+    if (::flock(own.value, LOCK_EX | LOCK_NB) != 0) throw FileError(path_, "is in use by another Rebake process");
+    std::swap(own.value, descriptor_.value);
+  }
 
   // Removes an incomplete last line before the first append; a journal that is only read stays as it is.
   void mend() {

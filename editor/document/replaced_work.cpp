@@ -7,6 +7,7 @@
 
 #include "editor/document/journal.h"
 #include "editor/document/project.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/source_guard.h"
@@ -134,7 +135,7 @@ void refuse_replacing_more(const fs::path& path, std::size_t edits) {
   const nlohmann::json& version = root.at("rebake_project");
   if (!version.is_number() || version > project_version) refuse("was written by a newer version of Rebake");
   if (const std::size_t there = root.at("edits").size(); there > edits)
-    refuse(fmt::format("contains {} edits, more than the {} to be saved", there, edits));
+    refuse(fmt::format("contains {}, more than the {} to be saved", counted(there, "edit"), edits));
 }
 
 }  // namespace rebake

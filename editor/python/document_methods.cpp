@@ -196,12 +196,6 @@ void add_edit_methods(py::class_<PyDocument>& type) {
 
 }  // namespace
 
-LiveDocuments& live_documents() {
-  // Never destroyed: documents may outlive the module's statics at exit.
-  static auto* const documents = new LiveDocuments;
-  return *documents;
-}
-
 void add_document_methods(py::class_<PyDocument>& type) {
   type.def_property_readonly("nodes", &nodes_of, "Every node: id, name, parent, visible, locked, triangles, to_world.");
   type.def_readwrite(

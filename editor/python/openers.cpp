@@ -12,6 +12,7 @@
 #include "editor/python/json_python.h"
 #include "editor/python/py_document.h"
 #include "editor/python/warnings.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/files.h"
 
 using nlohmann::json;
@@ -73,8 +74,8 @@ std::unique_ptr<PyDocument> recover_document(const std::filesystem::path& journa
   if (recovered->torn)
     recovered->lost.insert(recovered->lost.begin(), "the last edit, whose line in the journal is incomplete");
   if (recovered->skipped_undone > 0)
-    recovered->lost.push_back(fmt::format("{} undone edits, because a source of theirs is missing or has changed",
-                                          recovered->skipped_undone));
+    recovered->lost.push_back(counted(recovered->skipped_undone, "undone edit") +
+                              ", because a source is missing or has changed");
   for (const std::string& lost : recovered->lost) warn("not recovered: " + lost);
   auto document = std::make_unique<PyDocument>(std::move(recovered->document));
   document->progress = callback;

@@ -2,16 +2,16 @@
 
 #include <pybind11/pybind11.h>
 
-#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <mutex>
-#include <set>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "editor/actions/session.h"
-#include "editor/edits/nodes/import.h"
 #include "editor/python/work.h"
 
 namespace rebake {
@@ -21,41 +21,48 @@ namespace py = pybind11;
 class PyDocument;
 
 /// Sources of all documents of the process: no output of one may replace a source of another. A folder that the process
-/// exported may be replaced while other documents only import it: notebooks open their exports and export again.
+/// exported may be replaced while other documents only import it, as long as it has what was exported: notebooks open
+/// their exports and export again.
 /// Thread-safe.
 class LiveDocuments {
  public:
-  struct Entry {
-    SourceGuard sources;
-    std::vector<std::filesystem::path> imports;  ///< canonical
-    bool holds_work = false;                     ///< edits, a journal or a project depend on the sources
-  };
-  void publish(const PyDocument* document, Entry entry, const std::vector<std::string>& exports) {
+  void publish(const PyDocument* document, SourceGuard sources) {
     const std::scoped_lock lock(mutex_);
-    entries_[document] = std::move(entry);
-    std::error_code error;
-    for (const std::string& folder : exports) exports_.insert(std::filesystem::weakly_canonical(folder, error));
+    sources_[document] = std::move(sources);
+  }
+  /// Remembers that this process has just written a file or folder.
+  void add_export(const std::filesystem::path& path) {
+    const std::optional<std::uint64_t> content = content_at(path);
+    const std::scoped_lock lock(mutex_);
+    if (content) exports_[plain_path(path)] = *content;
+  }
+  /// Whether a path has what this process exported there.
+  bool has_export(const std::filesystem::path& path) {
+    std::unique_lock lock(mutex_);
+    const auto found = exports_.find(plain_path(path));
+    if (found == exports_.end()) return false;
+    const std::uint64_t exported = found->second;
+    lock.unlock();  // reading takes long
+    return content_at(path) == exported;
   }
   void forget(const PyDocument* document) {
     const std::scoped_lock lock(mutex_);
-    entries_.erase(document);
+    sources_.erase(document);
   }
   std::vector<SourceGuard> sources_of_others(const PyDocument* document) {
     const std::scoped_lock lock(mutex_);
     std::vector<SourceGuard> others;
-    for (const auto& [other, entry] : entries_) {
-      const bool made_here = !entry.imports.empty() &&
-                             std::all_of(entry.imports.begin(), entry.imports.end(),
-                                         [&](const std::filesystem::path& path) { return exports_.contains(path); });
-      if (other != document && (entry.holds_work || !made_here)) others.push_back(entry.sources);
-    }
+    for (const auto& [other, sources] : sources_)
+      if (other != document) others.push_back(sources);
     return others;
   }
 
  private:
+  static std::optional<std::uint64_t> content_at(const std::filesystem::path& path);
+
   std::mutex mutex_;
-  std::map<const PyDocument*, Entry> entries_;
-  std::set<std::filesystem::path> exports_;  ///< canonical
+  std::map<const PyDocument*, SourceGuard> sources_;
+  std::map<std::filesystem::path, std::uint64_t> exports_;  ///< canonical paths, and the content
 };
 LiveDocuments& live_documents();
 
@@ -112,24 +119,17 @@ class PyDocument {
   }
 
  private:
-  void publish_sources() {
-    const Document& document = session_.document;
-    LiveDocuments::Entry entry{
-        document.own_sources(), {}, document.has_saved_work() || document.history().redo_count() > 0};
-    std::error_code error;
-    for (const Edit& edit : document.history().edits()) {
-      if (const Import* import = edit.as<Import>())
-        entry.imports.push_back(std::filesystem::weakly_canonical(scene_root(import->path), error));
-      else
-        entry.holds_work = true;
-    }
-    std::vector<std::string> written = session_.exports;
-    written.insert(written.end(), session_.outputs.begin(), session_.outputs.end());
-    live_documents().publish(this, std::move(entry), written);
-  }
+  struct Imported {
+    std::string path;             ///< as in the edit
+    std::filesystem::path place;  ///< absolute when it was imported: the working directory may change
+    bool made_here;               ///< it had what this process exported there
+  };
+  void publish_sources();
 
   std::mutex mutex_;
   Session session_;
+  std::vector<Imported> imports_;          ///< of the history
+  std::size_t exports_ = 0, outputs_ = 0;  ///< numbers of those that were published
 };
 
 /// Adds the methods of class Document that edit, save, export and render, and a method per edit.

@@ -134,6 +134,13 @@ void SourceGuard::release_contents(const fs::path& folder) {
   });
 }
 
+void SourceGuard::release(const fs::path& folder) {
+  const fs::path path = plain_path(folder);
+  std::erase_if(sources_, [&](const Source& source) {
+    return source.path == path || *source.path.lexically_relative(path).begin() != "..";
+  });
+}
+
 bool SourceGuard::add_source(Source source) {
   for (Source& known : sources_)
     if (known.path == source.path && known.is_folder == source.is_folder) {

@@ -199,11 +199,6 @@ FilledHoles filled(const BakedObject& object, const TriangleSet& removed, const 
     }
     ++result.holes;
     result.triangles += patch.faces.size();
-    for (const Face& face : patch.faces)
-      result.area += (patch.vertices[face[1]] - patch.vertices[face[0]])
-                         .cross(patch.vertices[face[2]] - patch.vertices[face[0]])
-                         .norm() /
-                     2;
     result.around.push_back(triangles_around(loop, number));
     patches.push_back(std::move(patch));
     features.push_back(std::move(own));
@@ -228,6 +223,18 @@ double weld_tolerance(const BakedObject& object) {
 }
 
 }  // namespace
+
+double patch_area(const FilledHoles& filled, const Affine& to_world) {
+  if (filled.holes == 0) return 0;
+  const Soup& soup = filled.object->sets.back().soup;
+  double area = 0;
+  for (const Face& face : soup.faces()) {
+    const Vec3 at = to_world * soup.positions()[face[0]], right = to_world * soup.positions()[face[1]],
+               up = to_world * soup.positions()[face[2]];
+    area += (right - at).cross(up - at).norm() / 2;
+  }
+  return area;
+}
 
 FilledHoles filled_holes(const BakedObject& object, const TriangleSet& removed, const Progress& progress) {
   return filled(object, removed, hole_loops(object, removed, weld_tolerance(object)), longest_loop, progress);

@@ -11,7 +11,6 @@ struct FilledHoles {
   std::size_t removed = 0;                    ///< triangles
   std::size_t holes = 0, triangles = 0;       ///< closed holes, and their triangles
   std::uint64_t texels = 0;                   ///< of the patches' triangles
-  double area = 0;                            ///< of the patches, in square object units
   /// Root mean square difference of display colours (0 … 1) between the texels at the borders and the colours that the
   /// patches continue from there, seen along the patches' normals.
   double color_step = 0;
@@ -25,6 +24,9 @@ struct FilledHoles {
   /// Per closed hole: the triangles around it, numbered without the removed ones.
   std::vector<std::vector<std::uint32_t>> around;
 };
+
+/// Area of the patches where `to_world` places the object, in square units there.
+double patch_area(const FilledHoles& filled, const Affine& to_world);
 
 /// Removes the flagged triangles and closes the holes that they leave. Surfaces continue smoothly (hole_patch()).
 /// Features are interpolated harmonically from the opaque texels at the border, so the patches keep their view

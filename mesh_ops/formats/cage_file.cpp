@@ -79,10 +79,30 @@ Vec3 point_of(std::istringstream& words, const std::filesystem::path& path, std:
   return point;
 }
 
+[[noreturn]] void fail_at_point(const std::filesystem::path& path, std::size_t line, const std::string& word,
+                                const std::string& numbers) {
+  throw FileError(path,
+                  fmt::format("line {}: a face names point {}, but points have the numbers {}", line, word, numbers));
+}
+
+// Throws FileError unless the corners of a face, counted from 1 or backwards from -1, are among `points`.
+void check_corners(std::istringstream& words, std::size_t points, const std::filesystem::path& path, std::size_t line) {
+  for (std::string word; words >> word;) {
+    const std::string number = word.substr(0, word.find('/'));
+    long long corner = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), corner);
+    if (error != std::errc() || end != number.data() + number.size())
+      throw FileError(path, fmt::format("line {}: \"{}\" is not the corner of a face", line, word));
+    if (corner == 0 || std::abs(corner) > static_cast<long long>(points))
+      fail_at_point(path, line, number, fmt::format("1 to {}", points));
+  }
+}
+
 // Without materials, for which OpenMesh needs other files.
 CageText obj_text(const std::filesystem::path& path, const std::string& bytes) {
   CageText result;
   std::istringstream lines(bytes);
+  std::vector<std::pair<std::size_t, std::string>> faces;  // and their lines
   std::size_t number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
@@ -91,7 +111,14 @@ CageText obj_text(const std::filesystem::path& path, const std::string& bytes) {
     words >> key;
     if (key == "mtllib" || key == "usemtl") continue;
     if (key == "v") result.points.push_back(point_of(words, path, number));
+    if (key == "f") faces.emplace_back(number, line);
     result.text += line + '\n';
+  }
+  for (const auto& [at, line] : faces) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string key;
+    words >> key;
+    check_corners(words, result.points.size(), path, at);
   }
   return result;
 }
@@ -136,6 +163,7 @@ CageText off_text(const std::filesystem::path& path, const std::string& bytes) {
     for (std::size_t c = 0; c < corners; ++c) {
       std::size_t vertex = 0;
       if (!(line >> vertex)) throw FileError(path, fmt::format("line {}: is not a face", number));
+      if (vertex >= points) fail_at_point(path, number, std::to_string(vertex), fmt::format("0 to {}", points - 1));
       result.text += fmt::format(" {}", vertex);
     }
     result.text += '\n';
@@ -158,10 +186,11 @@ Cage read_triangles(const std::filesystem::path& path) {
   // OpenMesh drops faces that make a mesh non-manifold and reports that only to its error stream.
   const OpenMeshMessages complaints;
   const bool read = OpenMesh::IO::read_mesh(mesh, text, format, options);
+  if (read && !complaints.text().empty())
+    throw FileError(path,
+                    "has a face that cannot be added: its points must exist and differ, and the mesh must be manifold "
+                    "(each edge in at most two triangles, each point in one triangle fan)");
   if (!read || mesh.n_faces() == 0) throw FileError(path, "contains no readable mesh");
-  if (!complaints.text().empty())
-    throw FileError(
-        path, "is non-manifold: each edge must belong to at most two triangles, and each point to one triangle fan");
   Cage cage;
   for (const auto v : mesh.vertices()) {
     const auto& p = mesh.point(v);

@@ -213,6 +213,21 @@ void add_notes_of_left_out(const Scene& scene, bool one_folder, std::vector<std:
   if (scene.light) notes.emplace_back("the format has no light settings: they are not exported");
 }
 
+namespace {
+
+// What the nodes, of a folder each, do not have in common.
+std::string what_separates(const std::vector<Node>& nodes) {
+  std::map<Layout, std::size_t> folders_of;
+  for (const Node& node : nodes) ++folders_of[node.object->layout];
+  const bool decoders = std::any_of(folders_of.begin(), folders_of.end(), [](const auto& of) { return of.second > 1; });
+  std::vector<std::string> common;
+  if (decoders) common.emplace_back("one decoder in one orientation");
+  if (folders_of.size() > 1) common.emplace_back("one file layout (option layout)");
+  return fmt::format("{}", fmt::join(common, ", "));
+}
+
+}  // namespace
+
 ExportReport export_scene(const Scene& scene, const std::filesystem::path& folder, const ExportOptions& options,
                           const Progress& progress) {
   bool reordered = false;
@@ -251,7 +266,7 @@ ExportReport export_scene(const Scene& scene, const std::filesystem::path& folde
     write_baked_folder(out, {}, object, object.layout, report.notes, progress, false, options.page_side);
   } else {
     report.notes.push_back(
-        fmt::format("one folder holds one decoder in one orientation: wrote scene.json with {} folders", nodes.size()));
+        fmt::format("one folder holds {}: wrote scene.json with {} folders", what_separates(nodes), nodes.size()));
     Scene merged;
     merged.background = scene.background;
     merged.ground = scene.ground;

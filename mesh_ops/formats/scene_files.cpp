@@ -107,6 +107,10 @@ void refuse_foreign_content(const fs::path& folder) {
   }
   for (const auto& [marker, genuine] : markers)
     if (!genuine) refuse(folder / marker);
+  // A folder with the main files of two formats is read as one of them; the other is not part of its scene.
+  if (markers.size() > 1)
+    for (const auto& [marker, genuine] : markers)
+      if (format_at(folder) == nullptr || marker != format_at(folder)->marker) refuse(folder / marker);
   const bool known = !markers.empty();
   // At the top, only files of the formats whose markers are there.
   std::map<fs::path, std::set<std::string>> files_in;

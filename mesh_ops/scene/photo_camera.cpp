@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
 
@@ -85,15 +86,15 @@ std::vector<Camera> views_of(const std::vector<PhotoCamera>& cameras, std::vecto
     not_square += std::abs(camera.focal.x() / camera.focal.y() - 1) > 1e-3 ? 1 : 0;
   }
   if (distorted > 0)
-    notes.push_back(fmt::format("{} cameras have lens distortion, which views do not have", distorted));
+    notes.push_back(counted(distorted, "camera has", "cameras have") + " lens distortion, which views do not have");
   if (off_center > 0)
     notes.push_back(
-        fmt::format("{} cameras have a principal point off the centre of the picture, by up to {:.1f} "
+        fmt::format("{} a principal point off the centre of the picture, by up to {:.1f} "
                     "pixels; views have it in the centre",
-                    off_center, farthest));
+                    counted(off_center, "camera has", "cameras have"), farthest));
   if (not_square > 0)
-    notes.push_back(
-        fmt::format("{} cameras have pixels that are not square; views use the vertical field of view", not_square));
+    notes.push_back(counted(not_square, "camera has", "cameras have") +
+                    " pixels that are not square; views use the vertical field of view");
   return views;
 }
 

@@ -1,6 +1,8 @@
 #include "render/graph/effects.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <algorithm>
 
 #include "mesh_ops/base/counted.h"
 
@@ -27,9 +29,14 @@ std::string describe_draws(const FramePlan& plan) {
 }
 
 std::string describe_decoder(const FramePlan& plan) {
-  const Decoder& d = *plan.decoders.front();
-  if (d.rule == ColorRule::diffuse && plan.decoders.size() == 1) return "colours are read from the textures";
-  return fmt::format("decoder 11-{}-{}-3, weights as {}", d.hidden0(), d.hidden1(),
+  std::vector<std::string> sizes;
+  for (const auto& decoder : plan.decoders) {
+    if (decoder->rule == ColorRule::diffuse) continue;
+    const std::string size = fmt::format("11-{}-{}-3", decoder->hidden0(), decoder->hidden1());
+    if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
+  }
+  if (sizes.empty()) return "colours are read from the textures";
+  return fmt::format("{} {}, weights as {}", sizes.size() == 1 ? "decoder" : "decoders", fmt::join(sizes, " and "),
                      plan.options.weights == RenderOptions::Weights::constants ? "constants" : "a buffer");
 }
 

@@ -76,7 +76,7 @@ std::span<const Effect* const> effect_table();
 
 /// Size of a plan in words: "3 draws, 1200 triangles".
 std::string describe_draws(const FramePlan& plan);
-/// The first decoder in words: "decoder 11-16-16-3, weights as constants". Requires a draw.
+/// The decoders in words: "decoder 11-16-16-3, weights as constants".
 std::string describe_decoder(const FramePlan& plan);
 /// Size of textures in bytes above which texels are coded by default.
 inline constexpr std::uint64_t min_coded_bytes = std::uint64_t{256} << 20;

@@ -76,7 +76,7 @@ std::optional<Decision> decide_node_frames(const FrameFacts& facts) {
   if (!facts.any_draw()) return Decision{false, nothing_in_view};
   const std::size_t count = facts.plan.frames.size();
   if (count == 1) return Decision{false, "one decoder and orientation in view"};
-  return Decision{true, fmt::format("{} decoders or orientations in view", count)};
+  return Decision{true, fmt::format("{} decoders, orientations or alpha codes in view", count)};
 }
 
 std::optional<Decision> decide_rotated_rays(const FrameFacts& facts) {

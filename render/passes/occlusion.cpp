@@ -470,7 +470,7 @@ std::optional<Decision> decide(const FrameFacts& facts) {
     // The overhead per set is as large as the time to draw a few triangles.
     if (plan.triangles < max_faces_per_cluster * plan.draws.size())
       return Decision{false, fmt::format("{} with few triangles each: drawing is faster than testing",
-                                         counted(plan.draws.size(), "object"))};
+                                         counted(plan.draws.size(), "draw"))};
     if (facts.device.visible_share > 0)
       return Decision{false, fmt::format("in the last test, {:.0f} % of the triangles in view were visible",
                                          100 * facts.device.visible_share)};

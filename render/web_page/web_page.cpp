@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/polar.h"
 #include "render/gl/shader_library.h"
@@ -142,7 +143,8 @@ class Publisher {
       said.push_back(fmt::format("{} {}: {}", carried ? "carried" : "left out", name, why));
     };
     say("node target", frames_,
-        frames_ ? fmt::format("{} decoders or orientations", frame_list_.size()) : "one decoder and orientation");
+        frames_ ? fmt::format("{} decoders, orientations or alpha codes", frame_list_.size())
+                : "one decoder and orientation");
     say("rotated rays", rays_,
         rays_ ? "edits or bends rotate triangles" : "no triangle was rotated relative to its object");
     say("light maps", light_ > 0, light_ > 0 ? "light follows edits" : "light changes nothing");
@@ -428,7 +430,7 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
   if (motion) {
     std::vector<std::string> parts;
     if (const std::size_t nodes = motion->places.size(); nodes > 0)
-      parts.push_back(nodes == 1 ? "1 node moves" : fmt::format("{} nodes move", nodes));
+      parts.push_back(counted(nodes, "node moves", "nodes move"));
     if (!motion->cameras.empty()) parts.emplace_back("the camera moves");
     if (scene.poses != nullptr && !scene.poses->empty()) parts.emplace_back("bends change");
     if (parts.empty()) parts.emplace_back("no node moves");
@@ -443,11 +445,10 @@ WebPage web_page(const LitScene& scene, const WebPageOptions& options, const Pro
       deviation = std::max(deviation, bend.deviation / bend.rest->bounds().diagonal().norm());
   const bool bends = scene.poses != nullptr && !scene.poses->empty();
   say("bends by keyframes", bends,
-      bends
-          ? fmt::format("{} nodes bend by poses; between them vertices are at most {:.2g} of their object's size from "
-                        "their places",
-                        scene.poses->size(), deviation)
-          : "nothing bends");
+      bends ? fmt::format("{} by poses; between them vertices are at most {:.2g} of their object's size from "
+                          "their places",
+                          counted(scene.poses->size(), "node bends", "nodes bend"), deviation)
+            : "nothing bends");
   say("scene before the edits", before.has_value(), before ? "asked for" : "not asked for");
   for (const auto& [name, camera] : options.views) {
     json view = {{"name", name}, {"camera", json_of(camera)}};

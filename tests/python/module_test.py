@@ -202,6 +202,36 @@ class Module(unittest.TestCase):
         with self.assertRaisesRegex(rebake.Error, "a source of another open document"):
             writer.export(capture)  # not made by this process
 
+    def test_exports_are_known_by_place_and_content(self):
+        writer = rebake.open(FICUS)
+        before = os.getcwd()
+        for name in ("one", "two"):
+            os.mkdir(self.at / name)
+        shutil.copytree(FICUS, self.at / "two" / "scene")
+        try:
+            os.chdir(self.at / "one")
+            writer.export("scene")
+            os.chdir(self.at / "two")
+            reader = rebake.open("scene")
+            writer.select(none=True)  # the relative name of the export must not be taken for this folder
+            with self.assertRaisesRegex(rebake.Error, "a source of another open document"):
+                writer.export("scene")
+        finally:
+            os.chdir(before)
+        del reader
+        export = self.at / "one" / "scene"
+        shutil.rmtree(export)
+        shutil.copytree(FICUS, export)
+        decoder = json.loads((export / "mlp.json").read_text())
+        (export / "mlp.json").write_text(json.dumps(decoder | {"mine": 1}))
+        reader = rebake.open(export)
+        with self.assertRaisesRegex(rebake.Error, "a source of another open document"):
+            writer.export(export)  # replaced by another program since
+        del reader
+        writer.export(export)
+        reader = rebake.open(export)
+        writer.export(export)
+
     def test_saving_keeps_what_was_saved_meanwhile(self):
         path = str(self.at / "shared.rebake")
         rebake.open(FICUS).save(path)

@@ -95,11 +95,15 @@ std::string in_words(const std::string& name, const DeformationReport& report) {
       fmt::format("{} of \"{}\" deformed, minimum det J {:.3g}",
                   counted(report.changed, "welded vertex", "welded vertices"), name, report.min_determinant);
   if (report.folded > 0)
-    line +=
-        fmt::format("; {} are folded or collapsed (det J ≤ 0): select_folded selects their triangles", report.folded);
+    line += fmt::format("; {} folded or collapsed (det J ≤ 0): select_folded selects the triangles",
+                        counted(report.folded, "is", "are"));
   if (report.undefined > 0)
-    line += fmt::format("; {} have no unique rotation and take that of a neighbour", report.undefined);
-  if (report.outside > 0) line += fmt::format("; {} transparent ones are outside the cage and stay", report.outside);
+    line += fmt::format("; {} no unique rotation and {} that of a neighbour", counted(report.undefined, "has", "have"),
+                        report.undefined == 1 ? "takes" : "take");
+  if (report.outside > 0)
+    line += fmt::format("; {} outside the cage and {}",
+                        counted(report.outside, "transparent one is", "transparent ones are"),
+                        report.outside == 1 ? "stays" : "stay");
   if (report.not_finite > 0) line += fmt::format("; {} are not finite, or would not be, and stay", report.not_finite);
   return line;
 }
@@ -303,9 +307,11 @@ std::vector<Vec3> moved_points(const CageMoves& moves, const Cage& cage, bool sh
 std::vector<std::string> cage_warnings(const Cage& cage, const std::vector<Vec3>& moved) {
   std::vector<std::string> notes;
   if (const std::size_t pairs = self_intersections(cage); pairs > 0)
-    notes.push_back(fmt::format("the cage intersects itself ({} pairs of triangles)", pairs));
+    notes.push_back(
+        fmt::format("the cage intersects itself ({})", counted(pairs, "pair of triangles", "pairs of triangles")));
   else if (const std::size_t after = self_intersections({moved, cage.faces}); after > 0)
-    notes.push_back(fmt::format("the moved cage intersects itself ({} pairs of triangles)", after));
+    notes.push_back(fmt::format("the moved cage intersects itself ({})",
+                                counted(after, "pair of triangles", "pairs of triangles")));
   else if (const std::size_t nested = nested_components(cage); nested > 0)
     notes.push_back(
         fmt::format("the cage has parts inside others ({}); turn their triangles over to make them cavities", nested));

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/deform/handles/as_rigid_as_possible.h"
 
 namespace rebake {
@@ -62,7 +63,8 @@ Outcome apply(const Scene& scene, const HandlesDeform& edit, const Progress& pro
   const ConstrainedCage moved = as_rigid_as_possible(cage, places, edit.iterations, progress);
   std::vector<std::string> notes = cage_warnings(cage, moved.vertices);
   if (moved.free_components > 0)
-    notes.push_back(fmt::format("{} parts of the cage have no handle and stay", moved.free_components));
+    notes.push_back(counted(moved.free_components, "part of the cage has", "parts of the cage have") +
+                    " no handle and " + (moved.free_components == 1 ? "stays" : "stay"));
   if (moved.iterations > 0)
     notes.push_back(fmt::format("rigid to a residual of {:.1g} diagonals after {} iterations{}, energy {:.3g}",
                                 moved.residual, moved.iterations,

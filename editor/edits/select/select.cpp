@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/index/index.h"
 #include "mesh_ops/select/morphology.h"
 #include "mesh_ops/select/regions.h"
@@ -27,11 +28,10 @@ void check_texture_set(const std::vector<PlacedNode>& targets, int wanted) {
   for (const PlacedNode& placed : targets) most = std::max(most, placed.node->object->sets.size());
   if (wanted < 0 || static_cast<std::size_t>(wanted) >= most)
     throw FieldError("texture_set", targets.size() == 1
-                                        ? fmt::format("is out of range: \"{}\" has {} texture sets, counted from 0",
-                                                      targets.front().node->name, most)
-                                        : fmt::format("is out of range: no object has more than {} texture sets, "
-                                                      "counted from 0",
-                                                      most));
+                                        ? fmt::format("is out of range: \"{}\" has {}, counted from 0",
+                                                      targets.front().node->name, counted(most, "texture set"))
+                                        : fmt::format("is out of range: no object has more than {}, counted from 0",
+                                                      counted(most, "texture set")));
 }
 
 }  // namespace

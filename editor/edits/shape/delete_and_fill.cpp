@@ -25,7 +25,7 @@ Outcome apply(const Scene& scene, const DeleteAndFill& edit, const Progress& pro
       keep_triangles(node, selection, false);
       set_filled(node, filled);
     });
-    report_filling(name, filled, report);
+    report_filling(placed, filled, report);
   }
   return {std::move(result), std::move(report)};
 }

@@ -27,7 +27,7 @@ Outcome apply(const Scene& scene, const FillHoles& edit, const Progress& progres
     }
     any = true;
     result = with_changed(result, placed.node->id, [&](Node& node) { set_filled(node, filled); });
-    report_filling(placed.node->name, filled, report, longest);
+    report_filling(placed, filled, report, longest);
   }
   if (!any)
     throw EditError(open.empty() ? "the selected triangles have no closed border: select all triangles around a hole"

@@ -10,13 +10,15 @@
 
 namespace rebake {
 
-void report_filling(const std::string& node, const FilledHoles& filled, Report& report, std::size_t longest) {
-  report.lines.push_back(fmt::format(
-      "\"{}\": {}{} closed with {} of area {:.4g} and {}; colours at the border "
-      "differ by {:.1f} of "
-      "255 (root mean square) from those that continue",
-      node, filled.removed > 0 ? triangles_text(filled.removed) + " removed; " : "", counted(filled.holes, "hole"),
-      triangles_text(filled.triangles), filled.area, counted(filled.texels, "texel"), 255 * filled.color_step));
+void report_filling(const PlacedNode& placed, const FilledHoles& filled, Report& report, std::size_t longest) {
+  const std::string& node = placed.node->name;
+  report.lines.push_back(
+      fmt::format("\"{}\": {}{} closed with {} of area {:.4g} and {}; colours at the border "
+                  "differ by {:.1f} of "
+                  "255 (root mean square) from those that continue",
+                  node, filled.removed > 0 ? triangles_text(filled.removed) + " removed; " : "",
+                  counted(filled.holes, "hole"), triangles_text(filled.triangles), patch_area(filled, placed.to_world),
+                  counted(filled.texels, "texel"), 255 * filled.color_step));
   if (filled.open_edges > 0)
     report.lines.push_back(fmt::format("note: \"{}\": {} of the border form no closed loop and stay open", node,
                                        counted(filled.open_edges, "edge")));

@@ -7,7 +7,7 @@
 namespace rebake {
 
 /// Appends what filling the holes of a node did. `longest`: as for unfilled_words().
-void report_filling(const std::string& node, const FilledHoles& filled, Report& report,
+void report_filling(const PlacedNode& placed, const FilledHoles& filled, Report& report,
                     std::size_t longest = longest_loop);
 
 /// Why holes stay open: "2 have more than 8 edges, 1 crosses itself". `longest`: edges of the longest that are wanted.

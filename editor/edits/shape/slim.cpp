@@ -114,6 +114,19 @@ bool needs_stored_selection(const PlacedNode& placed) {
   return std::any_of(bends.begin(), bends.end(), [](const auto& bend) { return !bend.second.selection.empty(); });
 }
 
+// How sure it is that removed triangles show nowhere.
+std::string visibility_words(const TriangleSet& removed, const TriangleSet& opaque, std::uint64_t rays, int rays_each,
+                             double smallest_opening, std::size_t seen_once) {
+  std::size_t tested = 0;
+  for (std::size_t f = 0; f < removed.size(); ++f) tested += removed[f] != 0 && opaque[f] != 0 ? 1 : 0;
+  if (tested == 0) return "the removed triangles have no opaque texels";
+  return fmt::format(
+      "{} rays, {} from each removed triangle with opaque texels: at most {:.2g} % of the lines of sight to any of "
+      "them are unoccluded (95 % confidence); smallest visible share found {:.3g} %; {} reached by one ray only",
+      rays, rays_each, 100 * missed_share_bound(tested, rays_each), 100 * smallest_opening,
+      counted(seen_once, "triangle was", "triangles were"));
+}
+
 struct Slimmed {
   std::shared_ptr<const BakedObject> object;  ///< null if no triangle is visible
   TriangleSet dropped;                        ///< flags of the removed triangles
@@ -130,7 +143,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
       duplicates == 0 ? std::make_shared<const BakedObject>(before) : triangles_of(before, result.dropped, false);
   // Eyes all around the object do not depend on its placement.
   const bool around = !edit.eyes && cameras.empty();
-  TriangleSet unseen(single->triangle_count(), 1), seen_more(single->triangle_count(), 0);
+  TriangleSet unseen(single->triangle_count(), 1), seen_more(single->triangle_count(), 0), opaque;
   std::uint64_t rays = 0;
   int rays_each = std::numeric_limits<int>::max();  // of the placement with the fewest: its bound is the widest
   double opening = 1;
@@ -141,6 +154,7 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
       seen_more[f] |= seen.unseen[f] == 0 && (seen.seen_once[f] == 0 || unseen[f] == 0) ? 1 : 0;
       unseen[f] &= seen.unseen[f];
     }
+    opaque = seen.opaque;  // the same for all placements
     rays += seen.rays;
     rays_each = std::min(rays_each, seen.rays_each);
     opening = std::min(opening, seen.smallest_opening);
@@ -185,18 +199,12 @@ Slimmed slimmed_object(const BakedObject& before, const std::vector<PlacedNode>&
     result.lines.emplace_back(
         "note: visibility was computed at rest; keyframed bends may show triangles that were removed");
   result.lines.push_back(
-      fmt::format("{} of {} removed{} ({} unseen, {} duplicates), opaque texels {} → {}, {:.2f} → "
-                  "{:.2f} million texels in total",
+      fmt::format("{} of {} removed{} ({} unseen, {}), opaque texels {} → {}, {} → "
+                  "{} texels in total",
                   removed + duplicates, triangles_text(all), placements.size() > 1 ? " in each" : "", removed,
-                  duplicates, opaque_texels(before), opaque_texels(*made),
-                  static_cast<double>(texel_area(before)) / 1e6, static_cast<double>(texel_area(*made)) / 1e6));
-  if (removed > 0)
-    result.lines.push_back(fmt::format(
-        "{} rays, {} from each removed triangle with opaque texels: at most {:.2g} % of the lines of sight to any of "
-        "them "
-        "are unoccluded (95 % confidence); smallest visible share found {:.2g} %; {} reached by one ray only",
-        rays, rays_each, 100 * missed_share_bound(removed, rays_each), 100 * opening,
-        counted(once, "triangle was", "triangles were")));
+                  counted(duplicates, "duplicate"), opaque_texels(before), opaque_texels(*made), texel_area(before),
+                  texel_area(*made)));
+  if (removed > 0) result.lines.push_back(visibility_words(unseen, opaque, rays, rays_each, opening, once));
   if (edit.psnr > 0) result.lines.push_back(loss_words(loss));
   // If nothing changed, the object stays shared.
   result.object = changed ? made : placements.front().node->object;

@@ -173,9 +173,9 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
         if (!missing.empty()) said += "; " + missing;
         if (recovered.torn) said += "; the last edit was incomplete when the editor ended and is lost";
         if (recovered.skipped_undone > 0)
-          said +=
-              fmt::format("; {} undone edits were left out, because a source of theirs is missing; {} still holds them",
-                          recovered.skipped_undone, journal.string());
+          said += fmt::format("; {} left out, because a source is missing; {} still holds {}",
+                              counted(recovered.skipped_undone, "undone edit was", "undone edits were"),
+                              journal.string(), recovered.skipped_undone == 1 ? "it" : "them");
         session.say(said);
         if (recovered.lost.empty()) {
           // Otherwise the new journal holds everything.

@@ -103,6 +103,14 @@ void forget_thumbnails_without_journal() {
   });
 }
 
+// The place of a journal in a folder: by its name, or with a number if another one has it.
+fs::path free_name(const fs::path& folder, const fs::path& journal) {
+  fs::path place = folder / journal.filename();
+  for (int k = 2; fs::exists(fs::symlink_status(place)); ++k)
+    place = folder / fmt::format("{}-{}.journal", journal.stem().string(), k);
+  return place;
+}
+
 }  // namespace
 
 std::string LostWork::words() const {
@@ -128,13 +136,14 @@ void discard(const LostWork& work) {
   fs::create_directories(trash_folder());
   // The days in the trash are counted from this time.
   fs::last_write_time(work.journal, fs::file_time_type::clock::now());
-  fs::rename(work.journal, trash_folder() / work.journal.filename());
+  fs::rename(work.journal, free_name(trash_folder(), work.journal));
 }
 
 fs::path restore(const LostWork& work) {
   fs::create_directories(journal_folder());
-  fs::rename(work.journal, journal_folder() / work.journal.filename());
-  return journal_folder() / work.journal.filename();
+  const fs::path journal = free_name(journal_folder(), work.journal);
+  fs::rename(work.journal, journal);
+  return journal;
 }
 
 }  // namespace rebake

@@ -254,6 +254,7 @@ VisibilityReport traced_visibility(const BakedObject& object, const EyeRegion& e
     seen.rays += static_cast<std::uint64_t>(sent.rays);
     seen.unseen.push_back(sent.through == 0 ? 1 : 0);
     seen.seen_once.push_back(sent.through == 1 ? 1 : 0);
+    seen.opaque.push_back(sent.shows ? 1 : 0);
     if (sent.through == 0) continue;
     seen.smallest_opening = std::min(seen.smallest_opening, static_cast<double>(sent.through) / sent.rays);
   }

@@ -21,6 +21,7 @@ struct EyeRegion {
 struct VisibilityReport {
   TriangleSet unseen;      ///< triangles that no ray reached
   TriangleSet seen_once;   ///< triangles that a single ray reached
+  TriangleSet opaque;      ///< triangles with an opaque texel
   int rays_each = 0;       ///< rays per unseen triangle
   std::uint64_t rays = 0;  ///< total number of rays
   /// Smallest share of unoccluded rays among the visible triangles: the narrowest opening that was found. 1 if no

@@ -8,8 +8,11 @@
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/mobilenerf/baked_layout.h"
+#include "mesh_ops/formats/mobilenerf/baked_positions_file.h"
 #include "mesh_ops/formats/mobilenerf/json_text.h"
+#include "mesh_ops/formats/mobilenerf/rotations_file.h"
 #include "mesh_ops/formats/mobilenerf/source_file.h"
 
 namespace rebake {
@@ -75,16 +78,49 @@ std::vector<fs::path> baked_files(const fs::path& folder) {
   return files;
 }
 
+namespace {
+
+// Whether a file of a sidecar's name has its content.
+bool is_sidecar(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  const std::string bytes = read_file(file);
+  if (file.extension() != ".json")
+    return bytes.starts_with(file.filename() == "baked.bin" ? positions_mark : rotations_mark);
+  const json text = json::parse(bytes, nullptr, false);
+  return text.is_object() && text.contains("rebake_turns");
+}
+
+// Whether a file is the report of the training that wrote the scene in the folder.
+bool is_report_of(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  const json report = json::parse(read_file(file), nullptr, false);
+  return report.is_object() && report.value("software", json()) == "Rebake" &&
+         report.value("scene", json()) == hash_text(baked_hash(folder));
+}
+
+}  // namespace
+
+std::uint64_t baked_hash(const fs::path& folder) {
+  std::vector<fs::path> files = baked_files(folder);
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const fs::path& file : files)
+    all += file.generic_string() + " " + hash_text(content_hash(read_file(folder / file))) + "\n";
+  return content_hash(all);
+}
+
 std::set<std::string> own_baked_files(const fs::path& folder) {
   std::set<std::string> names{"mlp.json"};
-  names.insert(sidecar_names.begin(), sidecar_names.end());
   std::error_code error;
-  if (fs::is_regular_file(folder / training_report, error))
-    if (const json report = json::parse(read_file(folder / training_report), nullptr, false);
-        report.is_object() && report.value("software", json()) == "Rebake")
-      names.insert(training_report);
-  if (!fs::is_regular_file(folder / "mlp.json", error) || !has_baked_decoder(folder)) return names;
-  names.merge(names_of_scene(folder, baked_files, is_baked_file_name));
+  if (is_report_of(folder, folder / training_report)) names.insert(training_report);
+  if (fs::is_regular_file(folder / "mlp.json", error) && has_baked_decoder(folder))
+    names.merge(names_of_scene(folder, baked_files, is_baked_file_name));
+  for (const std::string_view name : sidecar_names) {
+    names.erase(std::string(name));
+    if (is_sidecar(folder / name)) names.emplace(name);
+  }
   return names;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -14,6 +15,9 @@ bool is_baked_file_name(const std::string& name);
 /// belong to it if they are read with it, since another program's file may have such a name; in a damaged folder, by
 /// their names.
 std::set<std::string> own_baked_files(const std::filesystem::path& folder);
+
+/// Hash of the names and contents of baked_files(). Throws FileError.
+std::uint64_t baked_hash(const std::filesystem::path& folder);
 
 /// Whether the decoder of a folder (mlp.json) is one by its content, not only by its name.
 bool has_baked_decoder(const std::filesystem::path& folder);

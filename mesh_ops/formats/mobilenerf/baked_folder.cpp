@@ -61,7 +61,7 @@ void resolve_whole_and_chunks(const BakedLayout::Set& files, SetComponents& part
     assumptions.push_back(fmt::format("{} has {} triangles and {} … have {}: all are read", whole,
                                       parts.chunks.front().faces.size(), first, in_chunks));
     // Exports must not copy these files unchanged.
-    parts.geometry.clear();
+    for (SourceFile& file : parts.geometry) file.name.clear();
   }
 }
 

@@ -12,7 +12,6 @@ namespace rebake {
 
 namespace {
 
-constexpr std::string_view positions_mark = "rebakebp";
 constexpr std::uint32_t positions_version = 1;
 constexpr std::size_t displacement_size = 3 * 4;
 

@@ -9,6 +9,9 @@
 
 namespace rebake {
 
+/// The first bytes of baked.bin.
+inline constexpr std::string_view positions_mark = "rebakebp";
+
 /// Encodes baked.bin, a sidecar file (sidecar_file.h) beside a folder's own files: the vertex displacements since light
 /// was baked (Soup::displacement), and the body that each face belongs to (BakedObject::body). Mark "rebakebp",
 /// version 1. Per texture set with such values: displacements (3 f32 per vertex) as corner_values(), then runs of faces

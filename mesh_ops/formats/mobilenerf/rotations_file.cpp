@@ -11,7 +11,6 @@ namespace rebake {
 
 namespace {
 
-constexpr std::string_view rotations_mark = "rebaketn";
 constexpr std::uint32_t rotations_version = 1;
 
 std::string bytes_of(const PackedRotation& turn) {

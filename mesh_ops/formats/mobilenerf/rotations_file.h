@@ -9,6 +9,9 @@
 
 namespace rebake {
 
+/// The first bytes of turns.bin.
+inline constexpr std::string_view rotations_mark = "rebaketn";
+
 /// Encodes turns.bin, a sidecar file (sidecar_file.h) beside a folder's own files: the rotations of vertices relative
 /// to their object (Soup::rotation). Mark "rebaketn", version 1. Per texture set with rotations:
 /// PackedRotation::bytes() per vertex, as corner_values().

@@ -2,6 +2,8 @@
 #include "editor/actions/session.h"
 #include "editor/edits/nodes/import.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/hash.h"
+#include "mesh_ops/formats/mobilenerf/baked_files.h"
 #include "tests/support/guards_fixture.h"
 
 namespace rebake::test {
@@ -71,7 +73,7 @@ TEST_F(Guards, ProjectsAreNotReplacedByOtherOutputsNorBySmallerProjects) {
   EXPECT_EQ(log().find("it replaced a project"), std::string::npos) << log();
   write("large.jsonl", import_line() + R"({"op": "background", "color": [0, 1, 0]})" + "\n" + save);
   EXPECT_EQ(program("run {}/large.jsonl"), 0) << log();
-  EXPECT_NE(log().find("it replaced a project with 1 other edits"), std::string::npos) << log();
+  EXPECT_NE(log().find("it replaced a project with 1 other edit"), std::string::npos) << log();
   const std::string project = read_file(path("p.rebake"));
   for (const char* command :
        {"run {}/small.jsonl", "run {}/small.jsonl --list-files {}/p.rebake", "render {}/p.rebake -o {}/p.rebake",
@@ -94,9 +96,12 @@ TEST_F(Guards, ReportsOfTrainingAreReplacedWithTheirSceneButOtherFilesOfThatName
   write("scene/rebake_training.json", "notes");
   EXPECT_EQ(program("run {}/s.jsonl"), 1);
   EXPECT_EQ(read_file(path("scene/rebake_training.json")), "notes");
-  write("scene/rebake_training.json", R"({"software": "Rebake"})");
+  write("scene/rebake_training.json", R"({"software": "Rebake", "scene": "0123456789abcdef"})");
+  EXPECT_EQ(program("run {}/s.jsonl"), 1) << "the report of another scene";
+  write("scene/rebake_training.json",
+        fmt::format(R"({{"software": "Rebake", "scene": "{}"}})", hash_text(baked_hash(path("scene")))));
   EXPECT_EQ(program("run {}/s.jsonl"), 0) << log();
-  EXPECT_FALSE(fs::exists(path("scene/rebake_training.json"))) << "the report of another scene";
+  EXPECT_FALSE(fs::exists(path("scene/rebake_training.json"))) << "the report of the scene that was replaced";
 }
 
 TEST_F(Guards, ScriptsThatSaveOneProjectSeveralTimesRunAgain) {

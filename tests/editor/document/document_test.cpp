@@ -510,7 +510,7 @@ TEST_F(DocumentTest, OtherProjectsAreReplacedWithAWarningOrNotAtAll) {
   EXPECT_THROW(other.save(path("p.rebake"), {}, Document::OtherProject::keep), FileError);
   const std::vector<std::string> warnings = other.save(path("p.rebake"));
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_EQ(warnings[0], "it replaced a project with 1 other edits");
+  EXPECT_EQ(warnings[0], "it replaced a project with 1 other edit");
   EXPECT_TRUE(other.save(path("p.rebake")).empty());
 }
 

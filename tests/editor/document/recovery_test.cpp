@@ -9,6 +9,7 @@
 #include <random>
 
 #include "editor/document/document.h"
+#include "editor/document/journal.h"
 #include "editor/document/project.h"
 #include "editor/edits/nodes/view.h"
 #include "mesh_ops/base/file_calls.h"
@@ -211,6 +212,25 @@ TEST_F(Recovery, RelinksTwoSourcesOfOnePath) {
   links.emplace(path("sources/ball"), path("second"));
   EXPECT_EQ(Document::open(path("p.rebake"), links).history().undo_count(), 2U);
   EXPECT_EQ(Document::recover(path("journal"), links).edits, 2U);
+}
+
+// Programs for backups make hard links instead of copies.
+TEST_F(Recovery, HardLinksOfAJournalKeepTheirContent) {
+  const std::string torn = journal(3) + "torn";
+  write_text(path("journal"), torn);
+  fs::create_hard_link(path("journal"), path("backup"));
+  Document::Recovered recovered = Document::recover(path("journal"));
+  Background edit;
+  edit.color = Vec3(0, 0, 1);
+  recovered.document.edit(edit);
+  EXPECT_EQ(read_file(path("backup")), torn);
+  fs::create_hard_link(path("journal"), path("second"));
+  const std::string second = read_file(path("second"));
+  edit.color = Vec3(0, 1, 0);
+  recovered.document.edit(edit);
+  EXPECT_EQ(read_file(path("second")), second);
+  EXPECT_EQ(Journal::read(path("journal")).entries.size(), 6U);
+  EXPECT_TRUE(Journal::in_use(path("journal"))) << "the new file is locked, too";
 }
 
 // A journal that begins after an undo contains the undone edits, because they can be redone.

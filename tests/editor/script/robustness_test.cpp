@@ -97,6 +97,8 @@ TEST_F(Robustness, EmptyPicturesHaveAReason) {
   };
   view.camera.eye = {0, 0, 4};
   EXPECT_EQ(why(), "it shows something");
+  const Image red{1, 2, {255, 0, 0, 255, 0, 0}};
+  EXPECT_EQ(blank_reason(session.scene(), view, red), std::nullopt) << "an object fills it with one colour";
   view.camera.far_plane = 2;
   EXPECT_NE(why().find("beyond the far plane at 2"), std::string::npos) << why();
   view.camera.far_plane = 1000;

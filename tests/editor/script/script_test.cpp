@@ -172,7 +172,9 @@ TEST_F(Script, ErrorsNameLineAndField) {
   expect_error("{\"op\": \"import\"}", "line 1: field \"path\": is missing");
   expect_error("{\"op\": \"import\", \"path\": \"{nope}/x\"}", "the variable {nope} has no value");
   expect_error("{\"op\": \"import\", \"path\": \"/no/such/folder\"}", "/no/such/folder: does not exist");
-  expect_error("{\"op\": ", "is not valid JSON");
+  expect_error("{\"op\": ", "is not valid JSON at column 8: ");
+  expect_error("\n        {\"op\":\"select\" \"all\":true}", "line 2: is not valid JSON at column 28: ");
+  expect_error("\xEF\xBB\xBF{\"é\": 1 2}", "line 1: is not valid JSON at column 9: ");
   expect_error("[]", "must be a JSON object");
   expect_error(import + R"({"op": "rename", "nod": "ball", "name": "b"})",
                "line 2: field \"nod\": is not a known field; did you mean \"node\"?");

@@ -67,6 +67,18 @@ TEST_F(ReadCage, ErrorsNameTheLine) {
   EXPECT_NE(error_of("a.off", "OFF\n").find("is truncated"), std::string::npos);
 }
 
+TEST_F(ReadCage, ErrorsNamePointsThatDoNotExist) {
+  const auto expect_error = [&](const char* name, const std::string& text, const char* says) {
+    EXPECT_NE(error_of(name, text).find(says), std::string::npos) << error_of(name, text);
+  };
+  const std::string obj = lines("v ", "f ", 1);
+  expect_error("a.off", "OFF\n8 13 0\n" + lines("", "3 ", 0) + "3 0 1 8\n",
+               "line 23: a face names point 8, but points have the numbers 0 to 7");
+  expect_error("a.obj", obj + "f 1 9 2\n", "line 21: a face names point 9, but points have the numbers 1 to 8");
+  expect_error("a.obj", obj + "f 1 -9/1 2 # back\n", "line 21: a face names point -9");
+  expect_error("a.obj", obj + "f 1 2 x\n", "line 21: \"x\" is not the corner of a face");
+}
+
 TEST(CageFile, ReadsThreeFormatsAndRejectsInvalidMeshes) {
   TemporaryFolder folder;
   const Cage cage = lattice_cage(Box(Vec3(0, 0, 0), Vec3(1, 0.3, 2)), 2, 1, 2);
@@ -108,6 +120,11 @@ TEST(CageFile, ReadsThreeFormatsAndRejectsInvalidMeshes) {
   refused("open.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 5 4 2\n", "open");
   refused("quads.obj", corners + "f 1 2 3 4\n", "not triangles");
   refused("fan.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 2 5\n", "manifold");
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+  refused("beyond.ply", ply + "3 0 1 3\n", "its points must exist and differ");
+  refused("twice.ply", ply + "3 0 1 1\n", "its points must exist and differ");
   refused("cage.stl", "solid\n", "ends in .obj");
   refused("none.ply", "ply\n", "contains no readable mesh");
 }

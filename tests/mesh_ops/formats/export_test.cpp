@@ -1,6 +1,8 @@
 // Export: which folders it replaces, and its report.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/formats.h"
@@ -37,6 +39,38 @@ TEST(Export, RejectsFilesWithoutSceneContents) {
     const auto before = folder_bytes(temporary.path());
     EXPECT_THROW(export_scene(scene_of(made_object()), temporary.path() / "out", {}), FileError) << name;
     EXPECT_EQ(folder_bytes(temporary.path()), before);
+  }
+}
+
+// Two scenes in one folder are read as one of them; the files of the other are not replaced.
+TEST(Export, RejectsFoldersOfTwoScenes) {
+  Scene two = scene_of(made_object({.columns = 4, .rows = 2, .seed = 1}));
+  Node other;
+  other.object = made_object({.columns = 4, .rows = 2, .seed = 2});
+  two = with_added(two, other, NodeId::none, 9);
+  const Scene one = scene_of(made_object({.columns = 4, .rows = 2}));
+  for (const bool rebake_first : {false, true}) {
+    const TemporaryFolder temporary;
+    const fs::path out = temporary.path() / "out", added = temporary.path() / "added";
+    export_scene(rebake_first ? two : one, out, {});
+    export_scene(rebake_first ? one : two, added, {});
+    fs::copy(added, out, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    const auto before = folder_bytes(out);
+    EXPECT_THROW(export_scene(one, out, {}), FileError) << rebake_first;
+    EXPECT_EQ(folder_bytes(out), before);
+  }
+}
+
+TEST(Export, ReplacesSidecarFilesByTheirContentOnly) {
+  const TemporaryFolder temporary;
+  const Scene scene = scene_of(made_object({.columns = 4, .rows = 2}));
+  for (const char* name : {"baked.bin", "turns.bin", "turns.json", "rebake_training.json"}) {
+    const fs::path out = temporary.path() / name;
+    export_scene(scene, out, {});
+    export_scene(scene, out, {});
+    write_text(out / name, R"({"software": "Rebake", "my notes": ""})");
+    EXPECT_THROW(export_scene(scene, out, {}), FileError) << name;
+    EXPECT_TRUE(read_file(out / name).starts_with("{"));
   }
 }
 
@@ -85,6 +119,29 @@ TEST(Export, ReportsChangedDrawingOrder) {
   };
   EXPECT_NE(notes_of({1, 2, 1}).find("drawn together"), std::string::npos);
   EXPECT_EQ(notes_of({1, 1, 2}).find("drawn together"), std::string::npos);
+}
+
+TEST(Export, SaysWhatSeparatesFolders) {
+  const auto note_of = [](std::initializer_list<std::pair<unsigned, Layout>> objects) {
+    Scene scene;
+    for (const auto& [seed, layout] : objects) {
+      Node node;
+      node.object = made_object({.columns = 4, .rows = 2, .seed = seed, .layout = layout});
+      scene = with_added(scene, node, NodeId::none, 99);
+    }
+    const TemporaryFolder out;
+    const auto notes = export_scene(scene, out.path() / "out", {}).notes;
+    const auto found =
+        std::find_if(notes.begin(), notes.end(), [](const auto& note) { return note.starts_with("one folder holds"); });
+    return found == notes.end() ? "" : *found;
+  };
+  EXPECT_EQ(note_of({{1, Layout::split}, {2, Layout::split}}),
+            "one folder holds one decoder in one orientation: wrote scene.json with 2 folders");
+  EXPECT_EQ(note_of({{1, Layout::split}, {1, Layout::chunked}}),
+            "one folder holds one file layout (option layout): wrote scene.json with 2 folders");
+  EXPECT_EQ(note_of({{1, Layout::split}, {2, Layout::split}, {1, Layout::chunked}}),
+            "one folder holds one decoder in one orientation, one file layout (option layout): wrote scene.json with 3 "
+            "folders");
 }
 
 TEST(Export, OntoItsOwnSourceIsSafe) {
