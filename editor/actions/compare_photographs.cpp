@@ -187,15 +187,15 @@ void run(Session& session, const ComparePhotographsAction& action) {
     rows.push_back(std::move(row));
   }
   if (missing > 0)
-    session.say(fmt::format("warning: {} of {} photographs are missing, the first is \"{}\"", missing, cameras.size(),
-                            first_missing));
+    session.say(fmt::format("warning: {} of {} missing, the first is \"{}\"", missing,
+                            counted(cameras.size(), "photograph"), first_missing));
   if (!masked.empty())
-    session.say(fmt::format("warning: masks leave out all of {} photographs, the first is \"{}\"", masked.size(),
-                            masked.front()));
+    session.say(fmt::format("warning: masks leave out all of {}, the first is \"{}\"",
+                            counted(masked.size(), "photograph"), masked.front()));
   if (rows.empty()) throw FileError(action.cameras, "none of its photographs exists and shows something");
   if (resampled > 0)
-    session.say(fmt::format("note: {} photographs were resampled without distortion and off-centre principal points",
-                            resampled));
+    session.say(fmt::format("note: {} resampled without distortion and off-centre principal points",
+                            counted(resampled, "photograph was", "photographs were")));
   double psnr = 0, ssim = 0, flip = 0;
   for (const Row& row : rows) {
     session.report(fmt::format("{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f}", row.name, row.errors.psnr_db, row.errors.ssim,

@@ -115,7 +115,9 @@ class Film {
     std::vector<bool> exists(frames_.size());
     for (std::size_t k = 0; k < frames_.size(); ++k) exists[k] = folder.has(k);
     const auto known = static_cast<std::size_t>(std::count(exists.begin(), exists.end(), true));
-    if (known > 0) session_.say(fmt::format("note: {} of {} pictures exist already", known, frames_.size()));
+    if (known > 0)
+      session_.say(fmt::format("note: {} of {} {} already", known, counted(frames_.size(), "picture"),
+                               known == 1 ? "exists" : "exist"));
     const auto start = Clock::now();
     std::size_t drawn = 0;
     for (std::size_t k = 0; k < frames_.size(); ++k) {

@@ -12,6 +12,7 @@
 #include "editor/actions/output_state.h"
 #include "editor/training/training_judgement.h"
 #include "editor/training/training_run.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
@@ -113,9 +114,9 @@ nlohmann::json judge(Session& session, const TrainingRun& run, const Scene& scen
     report["PSNR dB"] = number(errors.psnr_db);
     report["SSIM"] = number(errors.ssim);
     report["FLIP"] = number(errors.flip);
-    session.say(fmt::format("{} held-out photographs{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f} ({})",
-                            capture.held_out.size(), gain ? " after a gain each" : "", errors.psnr_db, errors.ssim,
-                            errors.flip, beside));
+    session.say(fmt::format("{}{}: {:.2f} dB, SSIM {:.4f}, FLIP {:.4f} ({})",
+                            counted(capture.held_out.size(), "held-out photograph"), gain ? " after a gain each" : "",
+                            errors.psnr_db, errors.ssim, errors.flip, beside));
     constexpr double better = 1;
     if (errors.psnr_db < better + std::max(simple.mean_color_db, simple.nearest_photograph_db))
       session.say(

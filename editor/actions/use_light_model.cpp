@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "editor/actions/describe_action.h"
@@ -19,9 +18,6 @@ std::vector<std::filesystem::path> UseLightModelAction::input_files(const nlohma
 
 void run(Session& session, const UseLightModelAction& action) {
   const TransferModel model = read_light_model(action.model);
-  // Models that this run trained may be trained again.
-  if (std::find(session.outputs.begin(), session.outputs.end(), action.model) == session.outputs.end())
-    session.document.protect_file(action.model, "a file that this run reads");
   const NodePtr node = use_light_model(model, session.scene(), action.model);
   for (const std::string& fact : facts_of(model)) session.say(fact);
   session.say(fmt::format("drags of \"{}\" now use the model", node->name));

@@ -19,11 +19,15 @@ using nlohmann::json;
 
 json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-// Geometry files that an object was read from, whatever edits left of it; 0 if it was made from others.
+// Geometry files of the sets that an object was read from, whatever edits left of it; 0 if it was made from other
+// objects, or read from a single file.
 std::size_t chunk_count(const BakedObject& object) {
   if (!object.origin) return 0;
   std::size_t total = 0;
-  for (const Origin::Set& set : object.origin->sets) total += set.geometry.size();
+  for (const Origin::Set& set : object.origin->sets)
+    total += static_cast<std::size_t>(std::count_if(set.geometry.begin(), set.geometry.end(), [](const auto& file) {
+      return !file.name.ends_with(".mtl");  // of nerf2mesh
+    }));
   return total;
 }
 

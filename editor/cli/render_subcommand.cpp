@@ -81,7 +81,8 @@ void print_times(const json& times) {
     fmt::print("{:<12} min {:8.2f}   median {:8.2f}   max {:8.2f} ms\n", name, s.at("min").get<double>(),
                s.at("median").get<double>(), s.at("max").get<double>());
   };
-  fmt::print("{} frames on {}\n", times.at("frames").get<int>(), times.at("device").get<std::string>());
+  fmt::print("{} on {}\n", counted(times.at("frames").get<std::size_t>(), "frame"),
+             times.at("device").get<std::string>());
   line("frame", times.at("frame_ms"));
   for (const auto& [name, s] : times.at("passes").items()) line("  " + name, s);
   fmt::print("peak memory  {:.1f} MB CPU, {:.1f} MB GPU\n", times.at("peak_cpu_bytes").get<double>() / 1e6,

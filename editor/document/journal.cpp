@@ -8,10 +8,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/file_calls.h"
@@ -168,7 +170,11 @@ class Journal::File {
     if (::fstat(descriptor_.value, &about) != 0 || about.st_nlink < 2) return;
     write_file_atomically(path_, read_file(path_), {});
     Descriptor own(open(path_, O_RDWR));
-    if (::flock(own.value, LOCK_EX | LOCK_NB) != 0) throw FileError(path_, "is in use by another Rebake process");
+    // Another editor that looks for lost work holds the lock for a moment.
+    for (int attempt = 0; ::flock(own.value, LOCK_EX | LOCK_NB) != 0; ++attempt) {
+      if (attempt == 100) throw FileError(path_, "is in use by another Rebake process");
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
     std::swap(own.value, descriptor_.value);
   }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
@@ -151,7 +152,7 @@ void read_project(const fs::path& path, const EditVisitor& each, const SourceLin
     for (const json& one : root.value("replaces", json::array())) {
       const auto k = one.at(0).get<std::size_t>(), count = one.at(1).get<std::size_t>();
       if (k < 2 || k > replaced.size() || count >= k)
-        throw FileError(path, fmt::format("replaces: edit {} cannot replace {} edits", k, count));
+        throw FileError(path, fmt::format("replaces: edit {} cannot replace {}", k, counted(count, "edit")));
       replaced[k - 1] = count;
       bases[k - 1 - count] = {};
     }

@@ -8,6 +8,7 @@
 #include "editor/fields/codec.h"
 #include "editor/python/json_python.h"
 #include "editor/python/py_document.h"
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/deform/cage_coordinates/cage_deformation.h"
 #include "mesh_ops/deform/cages/wrap.h"
 
@@ -83,8 +84,9 @@ py::array_t<double> move_by_cage(const py::object& points, const py::object& ver
   if (const auto outside = std::count(deformed.outside.begin(), deformed.outside.end(), 1); outside > 0) {
     const auto first = std::find(deformed.outside.begin(), deformed.outside.end(), 1) - deformed.outside.begin();
     const std::string warning =
-        fmt::format("{} points are outside the cage, where {} coordinates are undefined, and stay (first: row {})",
-                    outside, kind, first);
+        fmt::format("{} outside the cage, where {} coordinates are undefined, and {} (first: row {})",
+                    counted(static_cast<std::size_t>(outside), "point is", "points are"), kind,
+                    outside == 1 ? "stays" : "stay", first);
     if (PyErr_WarnEx(PyExc_UserWarning, warning.c_str(), 1) != 0) throw py::error_already_set();
   }
   for (std::size_t k = 0; k < moved_places.size(); ++k)

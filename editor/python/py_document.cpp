@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "editor/edits/nodes/import.h"
-#include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
+#include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/scene_files.h"
 
 namespace rebake {
@@ -17,15 +17,16 @@ LiveDocuments& live_documents() {
 
 std::optional<std::uint64_t> LiveDocuments::content_at(const std::filesystem::path& path) {
   try {
+    if (format_at(path) == nullptr) return std::nullopt;
     return output_hash_at(path);
-  } catch (const FileError&) {
+  } catch (const std::exception&) {
     return std::nullopt;  // removed or damaged since: not what was exported
   }
 }
 
 void PyDocument::publish_sources() {
-  for (; exports_ < session_.exports.size(); ++exports_) live_documents().add_export(session_.exports[exports_]);
-  for (; outputs_ < session_.outputs.size(); ++outputs_) live_documents().add_export(session_.outputs[outputs_]);
+  while (exports_ < session_.exports.size()) live_documents().add_export(session_.exports[exports_++]);
+  while (outputs_ < session_.outputs.size()) live_documents().add_export(session_.outputs[outputs_++]);
   const Document& document = session_.document;
   std::vector<std::string> paths;
   for (const Edit& edit : document.history().edits())

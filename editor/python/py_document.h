@@ -21,8 +21,8 @@ namespace py = pybind11;
 class PyDocument;
 
 /// Sources of all documents of the process: no output of one may replace a source of another. A folder that the process
-/// exported may be replaced while other documents only import it, as long as it has what was exported: notebooks open
-/// their exports and export again.
+/// exported may be replaced while other documents only import it, if it had what was exported when they did: notebooks
+/// open their exports and export again.
 /// Thread-safe.
 class LiveDocuments {
  public:
@@ -30,7 +30,7 @@ class LiveDocuments {
     const std::scoped_lock lock(mutex_);
     sources_[document] = std::move(sources);
   }
-  /// Remembers that this process has just written a file or folder.
+  /// Remembers that this process has just written something, if it is a scene.
   void add_export(const std::filesystem::path& path) {
     const std::optional<std::uint64_t> content = content_at(path);
     const std::scoped_lock lock(mutex_);
@@ -58,6 +58,7 @@ class LiveDocuments {
   }
 
  private:
+  // Of a scene; null if there is none.
   static std::optional<std::uint64_t> content_at(const std::filesystem::path& path);
 
   std::mutex mutex_;

@@ -28,8 +28,11 @@ ScriptCommand read_command(const nlohmann::json& line, const Scene& scene);
 /// Replaces "{name}" by the variable's value in all strings of a JSON value. Throws Error for an unknown variable.
 nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, std::string>& variables);
 
-/// Message of a JSON parse error, without the library's error code.
+/// Message of a JSON error, without the library's error code.
 std::string json_error_message(const std::exception& error);
+/// "not valid JSON at column 28: …" for a syntax error of the command in a line; columns are characters from 1.
+/// `command`: the part of `line` that was parsed.
+std::string syntax_error_in(std::string_view line, std::string_view command, const nlohmann::json::parse_error& error);
 
 /// The text with line feeds in place of single carriage returns, which old editors write.
 std::string with_line_feeds(std::string_view text);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
@@ -31,16 +32,14 @@ std::optional<PhotographSource> held_out_source(const PhotographSource& source, 
 }
 
 void add_notes(Capture& capture, const PhotographSet& set, std::size_t cameras, const char* which) {
+  const auto photographs = [which](std::size_t number) { return counted(number, fmt::format("{} photograph", which)); };
   if (set.missing > 0)
-    capture.notes.push_back(fmt::format("warning: {} of {} {} photographs are missing, the first is \"{}\"",
-                                        set.missing, cameras, which, set.first_missing));
-  if (set.masked > 0)
-    capture.notes.push_back(fmt::format("warning: masks leave out all of {} {} photographs", set.masked, which));
+    capture.notes.push_back(fmt::format("warning: {} of {} missing, the first is \"{}\"", set.missing,
+                                        photographs(cameras), set.first_missing));
+  if (set.masked > 0) capture.notes.push_back("warning: masks leave out all of " + photographs(set.masked));
   if (set.resampled > 0)
-    capture.notes.push_back(
-        fmt::format("note: {} {} photographs were resampled without distortion and off-centre "
-                    "principal points",
-                    set.resampled, which));
+    capture.notes.push_back(fmt::format("note: {} {} resampled without distortion and off-centre principal points",
+                                        photographs(set.resampled), set.resampled == 1 ? "was" : "were"));
 }
 
 void add_hash(ContentHash& hash, const PhotoCamera& camera, const FitPhotograph& photograph) {

@@ -93,8 +93,9 @@ void check_corners(std::istringstream& words, std::size_t points, const std::fil
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), corner);
     if (error != std::errc() || end != number.data() + number.size())
       throw FileError(path, fmt::format("line {}: \"{}\" is not the corner of a face", line, word));
-    if (corner == 0 || std::abs(corner) > static_cast<long long>(points))
-      fail_at_point(path, line, number, fmt::format("1 to {}", points));
+    const auto last = static_cast<long long>(points);
+    if (corner == 0 || corner < -last || corner > last)
+      fail_at_point(path, line, number, fmt::format("1 to {}, or backwards from -1", points));
   }
 }
 

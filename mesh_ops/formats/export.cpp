@@ -217,12 +217,15 @@ namespace {
 
 // What the nodes, of a folder each, do not have in common.
 std::string what_separates(const std::vector<Node>& nodes) {
-  std::map<Layout, std::size_t> folders_of;
-  for (const Node& node : nodes) ++folders_of[node.object->layout];
-  const bool decoders = std::any_of(folders_of.begin(), folders_of.end(), [](const auto& of) { return of.second > 1; });
+  const BakedObject& first = *nodes.front().object;
   std::vector<std::string> common;
-  if (decoders) common.emplace_back("one decoder in one orientation");
-  if (folders_of.size() > 1) common.emplace_back("one file layout (option layout)");
+  if (std::any_of(nodes.begin(), nodes.end(), [&](const Node& node) {
+        const BakedObject& object = *node.object;
+        return !nearly_equal(fold_rotation(*object.decoder, Mat3::Identity(), object.axes, first.axes), *first.decoder);
+      }))
+    common.emplace_back("one decoder in one orientation");
+  if (std::any_of(nodes.begin(), nodes.end(), [&](const Node& node) { return node.object->layout != first.layout; }))
+    common.emplace_back("one file layout (option layout)");
   return fmt::format("{}", fmt::join(common, ", "));
 }
 

@@ -72,7 +72,7 @@ ExportReport write_nerf2mesh(const Scene& scene, const fs::path& folder, const E
   std::vector<std::string> bent, lost_members;
   bool reordered = false;
   const std::vector<Node> nodes =
-      merged_for_export(without_bends(turned, &bent), std::nullopt, &reordered, &lost_members);
+      merged_for_export(without_bends(turned, &bent), Layout::split, &reordered, &lost_members);
   if (nodes.empty()) throw EditError("there is nothing to export: no visible node has triangles");
   if (nodes.size() > 1)
     throw EditError(

@@ -93,8 +93,9 @@ std::uint64_t output_hash_at(const fs::path& path) {
 
 void refuse_foreign_content(const fs::path& folder) {
   const auto refuse = [&](const fs::path& path) {
-    throw FileError(folder, fmt::format("contains \"{}\", which is not part of its scene; choose a new or empty folder",
-                                        path.lexically_relative(folder).string()));
+    throw FileError(
+        folder, fmt::format("contains \"{}\", which is not part of its scene; move it, or choose a new or empty folder",
+                            path.lexically_relative(folder).string()));
   };
   std::set<std::string> own;
   std::map<std::string, bool> markers;  // whether some format that has this marker finds it genuine

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/features/atlas/atlas.h"
@@ -149,18 +150,18 @@ class GltfWriter {
       if (bends) add_poses(nodes.back(), mesh, set, s, scale, poses, bends->seconds);
     }
     if (bends)
-      notes_.push_back(
-          fmt::format("the bends of \"{}\" are {} poses; between them its vertices are at most {:.2g} of its "
-                      "size from their places",
-                      node.name, bends->poses.size(), bends->deviation / bends->rest->bounds().diagonal().norm()));
+      notes_.push_back(fmt::format(
+          "the bends of \"{}\" are {}; between them its vertices are at most {:.2g} of its "
+          "size from their places",
+          node.name, counted(bends->poses.size(), "pose"), bends->deviation / bends->rest->bounds().diagonal().norm()));
     notes_.push_back(
         fmt::format("\"{}\" loses its view dependence: {:.1f} dB PSNR between its colours and {}, over "
                     "{} directions where they are visible",
                     node.name, loss.psnr_db(), eye_ ? "those from the given view" : "their means", directions));
     if (loss.hidden > 0 && !eye_)
-      notes_.push_back(
-          fmt::format("{} triangles of \"{}\" are visible from no direction: their colours are means over all",
-                      loss.hidden, node.name));
+      notes_.push_back(fmt::format("{} of \"{}\" {} visible from no direction: {} colours are means over all",
+                                   counted(loss.hidden, "triangle"), node.name, loss.hidden == 1 ? "is" : "are",
+                                   loss.hidden == 1 ? "its" : "their"));
     return nodes;
   }
 

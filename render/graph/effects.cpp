@@ -32,7 +32,9 @@ std::string describe_decoder(const FramePlan& plan) {
   std::vector<std::string> sizes;
   for (const auto& decoder : plan.decoders) {
     if (decoder->rule == ColorRule::diffuse) continue;
-    const std::string size = fmt::format("11-{}-{}-3", decoder->hidden0(), decoder->hidden1());
+    const std::string size = decoder->rule == ColorRule::network
+                                 ? fmt::format("11-{}-{}-3", decoder->hidden0(), decoder->hidden1())
+                                 : fmt::format("6-{}-3 added to a diffuse colour", decoder->hidden1());
     if (std::find(sizes.begin(), sizes.end(), size) == sizes.end()) sizes.push_back(size);
   }
   if (sizes.empty()) return "colours are read from the textures";

@@ -104,7 +104,7 @@ std::optional<Decision> decide_ray_per_sample(const FrameFacts& facts) {
   if (facts.forward() || facts.plan.view.samples == 1) return Decision{false, "a pixel has one sample"};
   if (!facts.plan.uses_view_direction) return Decision{false, "no decoder in view depends on the view direction"};
   if (facts.plan.frames.size() > 1 || facts.rotated_draws > 0)
-    return Decision{true, facts.rotated_draws > 0 ? "rotations differ within a pixel"
+    return Decision{true, facts.rotated_draws > 0 ? "rotations may differ within a pixel"
                                                   : "samples of a pixel may be of different objects"};
   const double pixel = pixel_span(facts.plan.view);
   if (pixel > widest_single_ray) return Decision{true, fmt::format("a pixel spans {:.2g} of its distance", pixel)};

@@ -248,7 +248,7 @@ class Module(unittest.TestCase):
         faces = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
                           [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]], np.uint32)
         points = np.array([[0.5, 0.5, 0.5], [3, 0.5, 0.5]])
-        with self.assertWarnsRegex(UserWarning, "1 points are outside the cage.*first: row 1"):
+        with self.assertWarnsRegex(UserWarning, "1 point is outside the cage.*stays .first: row 1"):
             moved = rebake.move_by_cage(points, vertices, faces, vertices + [1, 0, 0], "green")
         np.testing.assert_allclose(moved, [[1.5, 0.5, 0.5], [3, 0.5, 0.5]])
 

@@ -104,7 +104,9 @@ std::string in_words(const std::string& name, const DeformationReport& report) {
     line += fmt::format("; {} outside the cage and {}",
                         counted(report.outside, "transparent one is", "transparent ones are"),
                         report.outside == 1 ? "stays" : "stay");
-  if (report.not_finite > 0) line += fmt::format("; {} are not finite, or would not be, and stay", report.not_finite);
+  if (report.not_finite > 0)
+    line += fmt::format("; {} not finite, or would not be, and {}", counted(report.not_finite, "is", "are"),
+                        report.not_finite == 1 ? "stays" : "stay");
   return line;
 }
 

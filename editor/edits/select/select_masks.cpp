@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/formats/cameras/camera_formats.h"
@@ -184,8 +185,8 @@ Outcome apply(const Scene& scene, const SelectMasks& edit, const Progress& progr
           node.saved_selections[fmt::format("{} {}", edit.store, voting.labels()[k])] =
               std::make_shared<const TriangleSet>(chosen[t][k]);
       });
-  report.lines.push_back(fmt::format("{} of {} photographs have masks; they see {} triangles and agree on {:.1f} %",
-                                     voting.photographs(), found.cameras.size(), seen,
+  report.lines.push_back(fmt::format("masks for {} of {}; they see {} and agree on {:.1f} %", voting.photographs(),
+                                     counted(found.cameras.size(), "photograph"), counted(seen, "triangle"),
                                      seen > 0 ? 100 * agreeing / static_cast<double>(seen) : 0.0));
   return {std::move(result), std::move(report)};
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "editor/edits/describe_edit.h"
+#include "mesh_ops/base/counted.h"
 
 namespace rebake {
 
@@ -13,8 +14,8 @@ Scene apply(const Scene& scene, const SelectTriangles& edit) {
   TriangleSet flags(placed.node->object->triangle_count(), 0);
   for (const auto& [first, last] : edit.triangles.ranges) {
     if (last >= flags.size())
-      throw FieldError("triangles", fmt::format("{} is out of range: \"{}\" has {} triangles, counted from 0", last,
-                                                placed.node->name, flags.size()));
+      throw FieldError("triangles", fmt::format("{} is out of range: \"{}\" has {}, counted from 0", last,
+                                                placed.node->name, counted(flags.size(), "triangle")));
     std::fill(flags.begin() + static_cast<std::ptrdiff_t>(first), flags.begin() + static_cast<std::ptrdiff_t>(last) + 1,
               std::uint8_t{1});
   }

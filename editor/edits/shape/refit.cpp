@@ -81,7 +81,8 @@ std::vector<FitPhotograph> read_all(const Scene& scene, const Refit& edit, const
     photographs.push_back(for_fit(std::move(photograph)));
   }
   if (set.missing > 0)
-    report.lines.push_back(fmt::format("warning: {} of {} photographs are missing", set.missing, cameras.size()));
+    report.lines.push_back(
+        fmt::format("warning: {} of {} missing", set.missing, counted(cameras.size(), "photograph")));
   if (edit.gain)
     report.lines.push_back(fmt::format("exposures of the photographs: gains {:.2f} to {:.2f}", least, most));
   return photographs;

@@ -34,10 +34,10 @@ std::vector<std::string> ExportForm::losses(const Scene& scene) const {
   }
   if (plain) lines.emplace_back("one decoder is fitted to all objects; the message log reports its error in dB");
   if (objects > 1 && !plain)
-    lines.push_back(
-        fmt::format("{} objects: one folder has one decoder; objects with different decoders are written as a "
-                    "scene folder (scene.json), which only Rebake can open",
-                    objects));
+    lines.push_back(fmt::format(
+        "{} objects: one folder has one decoder in one orientation, and one file layout; objects that differ in these "
+        "are written as a scene folder (scene.json), which only Rebake can open",
+        objects));
   if (hidden > 0)
     lines.push_back(hidden == 1 ? std::string("1 hidden object is not exported")
                                 : fmt::format("{} hidden objects are not exported", hidden));

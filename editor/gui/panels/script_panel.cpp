@@ -35,6 +35,8 @@ void ScriptPanel::draw(DocumentEditor& editor, DialogState& dialogs) {
         editor.jobs.worker.start_change("script line", std::get<Action>(command));
       line_.clear();
       problem_.clear();
+    } catch (const nlohmann::json::parse_error& error) {
+      problem_ = syntax_error_in(line_, line_, error);
     } catch (const nlohmann::json::exception& error) {
       problem_ = "not valid JSON: " + json_error_message(error);
     } catch (const Error& error) {

@@ -103,11 +103,12 @@ void forget_thumbnails_without_journal() {
   });
 }
 
-// The place of a journal in a folder: by its name, or with a number if another one has it.
-fs::path free_name(const fs::path& folder, const fs::path& journal) {
+// Moves a journal to a folder and returns its path there, with a number if the name is taken.
+fs::path move_journal(const fs::path& journal, const fs::path& folder) {
   fs::path place = folder / journal.filename();
   for (int k = 2; fs::exists(fs::symlink_status(place)); ++k)
     place = folder / fmt::format("{}-{}.journal", journal.stem().string(), k);
+  fs::rename(journal, place);
   return place;
 }
 
@@ -136,14 +137,12 @@ void discard(const LostWork& work) {
   fs::create_directories(trash_folder());
   // The days in the trash are counted from this time.
   fs::last_write_time(work.journal, fs::file_time_type::clock::now());
-  fs::rename(work.journal, free_name(trash_folder(), work.journal));
+  move_journal(work.journal, trash_folder());
 }
 
 fs::path restore(const LostWork& work) {
   fs::create_directories(journal_folder());
-  const fs::path journal = free_name(journal_folder(), work.journal);
-  fs::rename(work.journal, journal);
-  return journal;
+  return move_journal(work.journal, journal_folder());
 }
 
 }  // namespace rebake

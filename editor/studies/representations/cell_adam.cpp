@@ -13,8 +13,7 @@ double fit_rate(double passes) {
   const double doublings = std::log2(std::max(passes, 1.0));
   // Share of the doubling that is done; all of the first pass counts as one.
   const double done = passes < 1 ? passes : passes / std::exp2(std::floor(doublings)) - 1;
-  constexpr double highest = 0.3, decades = 2;
-  return highest * std::pow(10, -decades * std::max(0.0, 2 * done - 1));
+  return std::pow(10, -std::max(0.0, 2 * done - 1)) / std::sqrt(1 + passes);
 }
 
 CellAdam::CellAdam(std::size_t cells, std::vector<float> rates)
@@ -35,39 +34,29 @@ void CellAdam::step(std::size_t batch, double rate_scale, const std::function<vo
   const float mean_scale = 1 / (1 - std::pow(first, static_cast<float>(steps_))),
               square_scale = 1 / (1 - std::pow(second, static_cast<float>(steps_))),
               share = 1 / static_cast<float>(batch), rate_factor = static_cast<float>(rate_scale);
-  // A cell that several lanes touch is stepped once, with the first of them.
-  for (std::size_t lane = 0; lane < lanes; ++lane)
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells_of_[lane].size(), 512),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t at = range.begin(); at < range.end(); ++at) {
-                          const std::size_t cell = cells_of_[lane][at];
-                          if (touched_before(lane, cell)) continue;
-                          for (std::size_t c = 0; c < channels_; ++c) {
-                            const std::size_t k = cell * channels_ + c;
-                            float gradient = 0;
-                            for (auto& of_lane : gradients_) {
-                              gradient += of_lane[k];
-                              of_lane[k] = 0;
-                            }
-                            gradient *= share;
-                            mean_[k] += (1 - first) * (gradient - mean_[k]);
-                            square_[k] += (1 - second) * (gradient * gradient - square_[k]);
-                            values_[k] -= rate_factor * rates_[c] * mean_[k] * mean_scale /
-                                          (std::sqrt(square_[k] * square_scale) + least);
-                          }
-                          bound(&values_[cell * channels_]);
-                        }
-                      });
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    for (const std::size_t cell : cells_of_[lane]) touched_[lane][cell] = 0;
-    cells_of_[lane].clear();
-  }
-}
-
-bool CellAdam::touched_before(std::size_t lane, std::size_t cell) const {
-  for (std::size_t earlier = 0; earlier < lane; ++earlier)
-    if (touched_[earlier][cell] != 0) return true;
-  return false;
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, touched_[0].size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
+        for (std::size_t cell = range.begin(); cell < range.end(); ++cell) {
+          bool any = false;
+          for (auto& lane : touched_) any = any || lane[cell] != 0;
+          if (!any) continue;
+          for (std::size_t c = 0; c < channels_; ++c) {
+            const std::size_t k = cell * channels_ + c;
+            float gradient = 0;
+            for (std::size_t lane = 0; lane < lanes; ++lane) {
+              gradient += gradients_[lane][k];
+              gradients_[lane][k] = 0;
+            }
+            gradient *= share;
+            mean_[k] += (1 - first) * (gradient - mean_[k]);
+            square_[k] += (1 - second) * (gradient * gradient - square_[k]);
+            values_[k] -=
+                rate_factor * rates_[c] * mean_[k] * mean_scale / (std::sqrt(square_[k] * square_scale) + least);
+          }
+          for (auto& lane : touched_) lane[cell] = 0;
+          bound(&values_[cell * channels_]);
+        }
+      });
 }
 
 void CellAdam::save(std::string& bytes) const {

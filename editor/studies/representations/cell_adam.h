@@ -12,11 +12,11 @@
 namespace rebake {
 
 /// Rays per step: few for small sets, so that a pass has about 64 steps or more.
-inline std::size_t batch_size(std::size_t rays) { return std::clamp<std::size_t>(rays / 64, 256, 1024); }
+inline std::size_t batch_size(std::size_t rays) { return std::clamp<std::size_t>(rays / 64, 256, 8192); }
 
-/// Factor of the learning rate after `passes` over the rays. In the second half of each doubling (from 1 to 2, 2 to 4,
-/// …) it falls to a hundredth: results are taken at the doublings, where the rate is low, after which it rises again
-/// (Loshchilov and Hutter 2017, warm restarts).
+/// Factor of the learning rate after `passes` over the rays. It falls as the inverse root of the passes, and in the
+/// second half of each doubling (from 1 to 2, 2 to 4, …) to a tenth of that: results are taken at the doublings, where
+/// the rate is low, after which it rises again (Loshchilov and Hutter 2017, warm restarts).
 double fit_rate(double passes);
 
 /// Adam (Kingma and Ba 2015) on values per cell, of which each step changes only the cells that a batch touches. A
@@ -33,10 +33,7 @@ class CellAdam {
   const float* values(std::size_t cell) const { return &values_[cell * channels_]; }
   /// Gradient of a cell in a lane, to be added to; marks the cell as touched.
   float* gradient(std::size_t lane, std::size_t cell) {
-    if (touched_[lane][cell] == 0) {
-      touched_[lane][cell] = 1;
-      cells_of_[lane].push_back(cell);
-    }
+    touched_[lane][cell] = 1;
     return &gradients_[lane][cell * channels_];
   }
   /// A step with the mean gradient of `batch` rays; clears gradients. `bound` limits the values of a cell afterwards.
@@ -47,13 +44,10 @@ class CellAdam {
   void load(std::string_view& bytes);
 
  private:
-  bool touched_before(std::size_t lane, std::size_t cell) const;
-
   std::size_t channels_;
   std::vector<float> rates_, values_, mean_, square_;
   std::array<std::vector<float>, lanes> gradients_;
   std::array<std::vector<std::uint8_t>, lanes> touched_;
-  std::array<std::vector<std::size_t>, lanes> cells_of_;  ///< touched ones
   int steps_ = 0;
 };
 

@@ -38,7 +38,7 @@ auto run_fit(Fit& fit, const GoesOn& goes_on, const Progress& progress, const Fi
       fit.pass(passes, progress);
       if (++passes < next) keep();
     }
-    auto volume = fit.packed(progress);
+    auto volume = fit.packed(passes, progress);
     if (!goes_on(passes, volume)) return volume;
     keep();
   }

@@ -33,7 +33,7 @@ constexpr double enough_db = 0.2;  // a doubling that gains less is the last
 constexpr int first_epochs = 10, most_epochs = 160;
 constexpr int validation_views = 2;
 // Changes when fits do: earlier results are then made again.
-constexpr int fit_version = 4;
+constexpr int fit_version = 3;
 
 double mean_psnr(const std::vector<HeldOutView>& views, const std::function<Image(const View&)>& draw) {
   double sum = 0;

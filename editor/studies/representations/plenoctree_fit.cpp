@@ -59,7 +59,7 @@ class Fit {
     }
   }
 
-  PlenOctree packed(const Progress& /*progress*/) {
+  PlenOctree packed(int /*passes*/, const Progress& /*progress*/) {
     mark_seen();
     PlenOctree tree;
     tree.basis = static_cast<int>(basis);

@@ -69,7 +69,7 @@ class Fit {
   }
 
   // The published form, whose network is tuned to the quantised grid, as the paper's is.
-  SnergScene packed(const Progress& progress) {
+  SnergScene packed(int passes, const Progress& progress) {
     most_seen_.assign(cells_.count(), 0);
     mark_seen();
     std::vector<Values> exact(cells_.count());
@@ -79,7 +79,7 @@ class Fit {
       for (std::size_t c = 0; c < snerg_channels; ++c)
         value[c] = most_seen_[cell] >= least_seen ? std::round(value[c] * 255) / 255 : 0;
     }
-    const SnergNetwork tuned = tuned_network(progress);
+    const SnergNetwork tuned = tuned_network(passes, progress);
     SnergScene scene = pack_snerg(
         cells_, [&](std::size_t cell) { return most_seen_[cell] >= least_seen ? adam_.values(cell) : nullptr; },
         tuned.decoder());
@@ -184,9 +184,8 @@ class Fit {
   }
 
   // The network after two more passes with the grid as it is.
-  SnergNetwork tuned_network(const Progress& progress) const {
+  SnergNetwork tuned_network(int passes, const Progress& progress) const {
     constexpr int tuning_passes = 2;
-    constexpr double highest_rate = 0.03;  // low, as at the end of fit_rate()
     const std::size_t count = rays_.rays.size(), batch = batch_size(count);
     // Rays that meet nothing have no light to lose.
     std::vector<std::pair<std::array<float, 7>, float>> sums(count);
@@ -212,7 +211,7 @@ class Fit {
           network.backward(lane, pass, error_of(ray, sum, added));
         }
       });
-      network.step(batch, highest_rate * std::pow(10, -done));
+      network.step(batch, std::pow(10, -done) / std::sqrt(1.0 + passes));
     }
     return network;
   }

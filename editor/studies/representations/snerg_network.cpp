@@ -59,7 +59,7 @@ void mask(const std::array<float, N>& activation, std::array<float, N>& slope) {
 
 }  // namespace
 
-SnergNetwork::SnergNetwork() : adam_(1, std::vector<float>(parameters, 0.015F)) {
+SnergNetwork::SnergNetwork() : adam_(1, std::vector<float>(parameters, 0.005F)) {
   std::mt19937 random(2);
   const auto fill = [&](std::size_t begin, std::size_t end, std::size_t in) {
     const double reach = std::sqrt(6.0 / static_cast<double>(in));  // He et al. 2015

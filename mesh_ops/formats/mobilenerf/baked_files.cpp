@@ -96,8 +96,12 @@ bool is_report_of(const fs::path& folder, const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return false;
   const json report = json::parse(read_file(file), nullptr, false);
-  return report.is_object() && report.value("software", json()) == "Rebake" &&
-         report.value("scene", json()) == hash_text(baked_hash(folder));
+  if (!report.is_object() || report.value("software", json()) != "Rebake") return false;
+  try {
+    return report.value("scene", json()) == hash_text(baked_hash(folder));
+  } catch (const FileError&) {
+    return false;  // the scene is damaged
+  }
 }
 
 }  // namespace
@@ -112,7 +116,7 @@ std::uint64_t baked_hash(const fs::path& folder) {
 }
 
 std::set<std::string> own_baked_files(const fs::path& folder) {
-  std::set<std::string> names{"mlp.json"};
+  std::set<std::string> names;
   std::error_code error;
   if (is_report_of(folder, folder / training_report)) names.insert(training_report);
   if (fs::is_regular_file(folder / "mlp.json", error) && has_baked_decoder(folder))

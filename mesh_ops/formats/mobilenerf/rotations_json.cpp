@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/packed_rotation.h"
 
@@ -28,7 +29,7 @@ void read_rotations_json(std::string_view text, const std::filesystem::path& nam
     for (const json& entry : root.at("sets")) {
       const auto s = whole_number(entry.at("set"), name);
       if (s >= sets.size())
-        throw FileError(name, fmt::format("refers to set {}, but the folder has {} sets", s, sets.size()));
+        throw FileError(name, fmt::format("refers to set {}, but the folder has {}", s, counted(sets.size(), "set")));
       const Soup& soup = sets[s].soup;
       std::vector<PackedRotation> rotations(soup.positions().size());
       for (const json& run : entry.at("runs")) {

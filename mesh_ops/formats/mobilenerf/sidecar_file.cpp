@@ -5,6 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "mesh_ops/base/counted.h"
 #include "mesh_ops/base/error.h"
 #include "mesh_ops/base/hash.h"
 
@@ -87,7 +88,7 @@ void read_sidecar(std::string_view bytes, const std::filesystem::path& name, std
     if (s < next) throw FileError(name, fmt::format("is damaged: set {} is out of order", s));
     next = std::uint64_t{s} + 1;
     if (s >= sets.size())
-      throw FileError(name, fmt::format("refers to set {}, but the folder has {} sets", s, sets.size()));
+      throw FileError(name, fmt::format("refers to set {}, but the folder has {}", s, counted(sets.size(), "set")));
     try {
       if (reader.take_u32() != sets[s].soup.triangle_count()) throw DamagedSet{"has a different number of faces"};
       read_set(reader, sets[s]);

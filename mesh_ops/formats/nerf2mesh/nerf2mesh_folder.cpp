@@ -83,7 +83,7 @@ bool is_file_name(const std::string& name) {
 }  // namespace
 
 std::set<std::string> own_nerf2mesh_files(const fs::path& folder) {
-  std::set<std::string> names{"mlp.json"};
+  std::set<std::string> names;
   std::error_code error;
   if (!fs::is_regular_file(folder / "mlp.json", error) || !has_nerf2mesh_decoder(folder)) return names;
   names.merge(names_of_scene(folder, nerf2mesh_files, is_file_name));

@@ -342,7 +342,6 @@ class SceneReader {
       std::string geometry;
       for (const SourceFile& file : files.geometry) geometry += words(file);
       files.texels = set.texels;
-      if (geometry.empty()) continue;  // made of several files that contradict each other
       const auto [same, fresh] = soups_.try_emplace(geometry, set.soup);
       if (fresh) continue;
       set.soup = Soup(same->second.shared_positions(), same->second.shared_uvs(), same->second.shared_faces(),

@@ -62,7 +62,7 @@ TEST_F(ComparePhotographs, KeepsFilesOfOthersAndTheCapture) {
   EXPECT_EQ(read_file(at("out/photographs.csv")), first);
   fs::remove(at("cap/b.png"));
   run(compare_ + "}");
-  EXPECT_NE(said().find("1 of 2 photographs are missing, the first is \"b.png\""), std::string::npos);
+  EXPECT_NE(said().find("1 of 2 photographs missing, the first is \"b.png\""), std::string::npos);
   fs::remove(at("cap/a.png"));
   expect_error(compare_ + "}", "none of its photographs exists and shows something");
 }

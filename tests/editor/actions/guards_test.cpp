@@ -73,7 +73,7 @@ TEST_F(Guards, ProjectsAreNotReplacedByOtherOutputsNorBySmallerProjects) {
   EXPECT_EQ(log().find("it replaced a project"), std::string::npos) << log();
   write("large.jsonl", import_line() + R"({"op": "background", "color": [0, 1, 0]})" + "\n" + save);
   EXPECT_EQ(program("run {}/large.jsonl"), 0) << log();
-  EXPECT_NE(log().find("it replaced a project with 1 other edit"), std::string::npos) << log();
+  EXPECT_NE(log().find("it replaced a project with 1 other edit\n"), std::string::npos) << log();
   const std::string project = read_file(path("p.rebake"));
   for (const char* command :
        {"run {}/small.jsonl", "run {}/small.jsonl --list-files {}/p.rebake", "render {}/p.rebake -o {}/p.rebake",

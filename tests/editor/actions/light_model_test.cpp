@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 
-#include "editor/actions/use_light_model.h"
 #include "editor/edits/shared_result_cache.h"
 #include "mesh_ops/base/files.h"
 #include "tests/support/script_fixture.h"
@@ -59,12 +58,6 @@ TEST_F(LightModel, IsTrainedOnTheHistoryUsedForgottenAndLoaded) {
   run(R"({"op": "use_light_model", "model": "{here}/m.light"})");
   EXPECT_NE(said().find("drags of \"ball\" now use the model"), std::string::npos);
   EXPECT_EQ(models(), 1U);
-  // The window and Python use models without a script.
-  std::filesystem::copy(folder_.path() / "m.light", folder_.path() / "other.light");
-  UseLightModelAction use;
-  use.model = (folder_.path() / "other.light").string();
-  rebake::run(session, use);
-  expect_error(R"({"op": "train_light", "out": "{here}/other.light", )" + few + "}", "a file that this run reads");
   run(R"({"op": "forget_light_model"})");
   EXPECT_NE(said().find("rotate the transfer again"), std::string::npos);
   EXPECT_EQ(models(), 0U);

@@ -160,8 +160,7 @@ TEST_F(Train, UnequalSizesMissingPhotographsAndFewOnesAreSaid) {
   fs::remove(at("cap/transforms02.png"));
   run(R"({"op": "train", "photographs": "{here}/cap", "out": "{here}/out", "side": 16, "steps": 100, "hold_out": 0})");
   const std::string words = said();
-  EXPECT_NE(words.find("1 of 3 training photographs are missing, the first is \"transforms02.png\""),
-            std::string::npos);
+  EXPECT_NE(words.find("1 of 3 training photographs missing, the first is \"transforms02.png\""), std::string::npos);
   EXPECT_NE(words.find("no photograph is held out"), std::string::npos);
   EXPECT_TRUE(report("out")["held out"].is_null());
 }

@@ -125,6 +125,24 @@ TEST_F(Script, ExportsAndRendersChosenNodes) {
   expect_error(R"({"op": "export", "out": "{here}/none", "nodes": ["nobody"]})", "nobody");
 }
 
+TEST_F(Script, ExportsNameDifferentLayoutsAsTheReasonForFolders) {
+  std::string said;
+  session.say = [&](const std::string& line) { said += line + "\n"; };
+  run(import + R"({"op": "export", "layout": "chunked", "out": "{here}/chunked"}
+{"op": "import", "path": "{here}/chunked", "as": "b"}
+{"op": "place", "node": "b", "position": [3, 0, 0]}
+{"op": "export", "out": "{here}/both"})");
+  EXPECT_NE(said.find("one folder holds one file layout (option layout): wrote scene.json with 2 folders"),
+            std::string::npos)
+      << said;
+  EXPECT_EQ(said.find("different rotations"), std::string::npos) << said;
+  said.clear();
+  run(R"({"op": "place", "node": "b", "rotation": {"axis": [0, 1, 0], "degrees": 40}}
+{"op": "export", "layout": "split", "out": "{here}/turned"})");
+  EXPECT_NE(said.find("one folder holds one decoder in one orientation: wrote"), std::string::npos) << said;
+  EXPECT_NE(said.find("different rotations"), std::string::npos) << said;
+}
+
 TEST_F(Script, EditsArePure) {
   run(import);
   const Scene before = session.scene();
@@ -263,7 +281,7 @@ TEST_F(Script, SelectAndEraseVariants) {
   expect_error(R"({"op": "select_picture", "view": "front", "polygon": [[0, 0], [1, 0]]})", "at least 3 points");
   expect_error(R"({"op": "select_picture", "view": "front", "brush": {"points": [[0, 0]], "radius": 0}})", "positive");
   expect_error(R"({"op": "select_like", "point": [0, 0, 0]})", "at least one of color");
-  expect_error(R"({"op": "select", "texture_set": 1})", "has 1 texture sets");
+  expect_error(R"({"op": "select", "texture_set": 1})", "has 1 texture set");
   expect_error(R"({"op": "select", "saved": "none"})", "there is no stored selection");
   run(R"({"op": "lock", "node": "ball"})");
   expect_error(R"({"op": "select_like", "node": "ball", "size": 2})", "is locked");

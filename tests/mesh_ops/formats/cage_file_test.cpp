@@ -74,8 +74,10 @@ TEST_F(ReadCage, ErrorsNamePointsThatDoNotExist) {
   const std::string obj = lines("v ", "f ", 1);
   expect_error("a.off", "OFF\n8 13 0\n" + lines("", "3 ", 0) + "3 0 1 8\n",
                "line 23: a face names point 8, but points have the numbers 0 to 7");
-  expect_error("a.obj", obj + "f 1 9 2\n", "line 21: a face names point 9, but points have the numbers 1 to 8");
+  expect_error("a.obj", obj + "f 1 9 2\n",
+               "line 21: a face names point 9, but points have the numbers 1 to 8, or backwards from -1");
   expect_error("a.obj", obj + "f 1 -9/1 2 # back\n", "line 21: a face names point -9");
+  expect_error("a.obj", obj + "f 1 -9223372036854775808 2\n", "line 21: a face names point -9223372036854775808");
   expect_error("a.obj", obj + "f 1 2 x\n", "line 21: \"x\" is not the corner of a face");
 }
 

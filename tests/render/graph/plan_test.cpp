@@ -33,6 +33,27 @@ TEST(Plan, CompositingOnlyForSeveralDecoders) {
   EXPECT_TRUE(plan(scene, {}).runs(effects::decoder_compositing));
 }
 
+TEST(Plan, NamesTheSizesOfAllDecoders) {
+  const auto words = [](std::initializer_list<Decoder> decoders) {
+    Scene scene;
+    for (const Decoder& decoder : decoders) {
+      auto object = std::make_shared<BakedObject>(*made_object());
+      object->decoder = std::make_shared<const Decoder>(decoder);
+      Node node;
+      node.object = object;
+      scene = with_added(scene, node, NodeId::none, 99);
+    }
+    return describe_decoder(plan(scene, {}));
+  };
+  const Decoder large = made_decoder(1), other = made_decoder(2), small = made_decoder(3, 8, 4);
+  Decoder diffuse = made_decoder(4);
+  diffuse.rule = ColorRule::diffuse;
+  EXPECT_EQ(words({large, other}), "decoder 11-16-16-3, weights as constants");
+  EXPECT_EQ(words({large, small}), "decoders 11-16-16-3 and 11-8-4-3, weights as constants");
+  EXPECT_EQ(words({diffuse, small}), "decoder 11-8-4-3, weights as constants");
+  EXPECT_EQ(words({diffuse}), "colours are read from the textures");
+}
+
 TEST(Plan, CulledAndHiddenObjectsCostNoDraw) {
   Scene scene = scene_of(made_object());
   const NodeId id = scene.roots[0]->id;

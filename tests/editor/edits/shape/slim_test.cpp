@@ -84,6 +84,17 @@ TEST(Slim, RemovesHiddenTrianglesAndKeepsPictures) {
   EXPECT_NE(joined(slim.report).find("at most 0.42 %"), std::string::npos) << "1 - (0.05 / 256)^(1 / 2048)";
 }
 
+TEST(Slim, SaysThatTransparentTrianglesNeededNoRays) {
+  auto object = std::make_shared<BakedObject>(*nested());
+  const FeatureTexture& inner = *object->sets[1].texels;
+  object->sets[1].texels = std::make_shared<const FeatureTexture>(
+      FeatureTexture::from_rows(inner.width(), inner.height(), inner.alpha_code(),
+                                [&](int, Texel* row) { std::fill_n(row, inner.width(), Texel{}); }));
+  const std::string said = joined(apply(scene_of(object), Edit(Slim{})).report);
+  EXPECT_NE(said.find("256 unseen, 0 duplicates"), std::string::npos) << said;
+  EXPECT_NE(said.find("the removed triangles have no opaque texels"), std::string::npos) << said;
+}
+
 TEST(Slim, KeepsTrianglesVisibleThroughASmallOpening) {
   const auto object = nested(2);
   const VisibilityReport seen = traced_visibility(*object, {}, 4096);
