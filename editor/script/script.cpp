@@ -115,13 +115,14 @@ std::string json_error_message(const std::exception& error) {
   return end == std::string::npos ? what : what.substr(end + 2);
 }
 
-std::string syntax_error_in(std::string_view line, std::string_view command, const json::parse_error& error) {
+std::string syntax_error_in(std::string_view line, std::string_view command, std::size_t byte,
+                            const std::exception& error) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  std::string_view before = line.substr(0, static_cast<std::size_t>(command.data() - line.data()) + error.byte);
+  std::string_view before = line.substr(0, static_cast<std::size_t>(command.data() - line.data()) + byte);
   if (before.starts_with(byte_order_mark)) before.remove_prefix(byte_order_mark.size());
   // Bytes 10xxxxxx continue a character of UTF-8. Beyond the end of the line is one more column.
-  const auto column = std::count_if(before.begin(), before.end(), [](char byte) { return (byte & 0xC0) != 0x80; }) +
-                      (error.byte > command.size() ? 1 : 0);
+  const auto column = std::count_if(before.begin(), before.end(), [](char one) { return (one & 0xC0) != 0x80; }) +
+                      (byte > command.size() ? 1 : 0);
   const std::string message = json_error_message(error);  // "parse error at line 1, column 20: syntax error …"
   const std::size_t end = message.find(": ");
   return fmt::format("not valid JSON at column {}: {}", column,
@@ -182,7 +183,7 @@ void run_script(Session& session, std::string_view text, const std::filesystem::
         std::get<Action>(command)(session);
       if (session.after_line) session.after_line();
     } catch (const json::parse_error& error) {
-      fail("is " + syntax_error_in(line, command_line, error));
+      fail("is " + syntax_error_in(line, command_line, error.byte, error));
     } catch (const json::exception& error) {
       fail("is not valid JSON: " + json_error_message(error));
     } catch (const Cancelled&) {

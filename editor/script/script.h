@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
@@ -31,8 +32,9 @@ nlohmann::json with_variables(nlohmann::json line, const std::map<std::string, s
 /// Message of a JSON error, without the library's error code.
 std::string json_error_message(const std::exception& error);
 /// "not valid JSON at column 28: …" for a syntax error of the command in a line; columns are characters from 1.
-/// `command`: the part of `line` that was parsed.
-std::string syntax_error_in(std::string_view line, std::string_view command, const nlohmann::json::parse_error& error);
+/// `command`: the part of `line` that was parsed; `byte`: where in it, from 1, as nlohmann::json::parse_error tells.
+std::string syntax_error_in(std::string_view line, std::string_view command, std::size_t byte,
+                            const std::exception& error);
 
 /// The text with line feeds in place of single carriage returns, which old editors write.
 std::string with_line_feeds(std::string_view text);

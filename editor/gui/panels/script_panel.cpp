@@ -36,7 +36,7 @@ void ScriptPanel::draw(DocumentEditor& editor, DialogState& dialogs) {
       line_.clear();
       problem_.clear();
     } catch (const nlohmann::json::parse_error& error) {
-      problem_ = syntax_error_in(line_, line_, error);
+      problem_ = syntax_error_in(line_, line_, error.byte, error);
     } catch (const nlohmann::json::exception& error) {
       problem_ = "not valid JSON: " + json_error_message(error);
     } catch (const Error& error) {
