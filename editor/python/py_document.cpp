@@ -20,7 +20,7 @@ std::optional<std::uint64_t> LiveDocuments::content_at(const std::filesystem::pa
     if (format_at(path) == nullptr) return std::nullopt;
     return output_hash_at(path);
   } catch (const std::exception&) {
-    return std::nullopt;  // removed or damaged since: not what was exported
+    return std::nullopt;  // it was removed or damaged since the export
   }
 }
 

@@ -20,10 +20,9 @@ namespace py = pybind11;
 
 class PyDocument;
 
-/// Sources of all documents of the process: no output of one may replace a source of another. A folder that the process
-/// exported may be replaced while other documents only import it, if it had what was exported when they did: notebooks
-/// open their exports and export again.
-/// Thread-safe.
+/// Sources of all documents of the process: no output of one document may replace a source of another. There is one
+/// exception, because notebooks open their exports and export again: a document may replace a scene that another
+/// document has only imported, if this process exported it and it was unchanged when it was imported. Thread-safe.
 class LiveDocuments {
  public:
   void publish(const PyDocument* document, SourceGuard sources) {

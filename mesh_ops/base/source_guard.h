@@ -36,7 +36,7 @@ class SourceGuard {
   void add_all(const SourceGuard& other, const std::string& role);
   /// Undoes add_contents() after the run has replaced the folder.
   void release_contents(const std::filesystem::path& folder);
-  /// Ends the protection of a folder and of what is in it.
+  /// Removes the protection of a folder and of all files and folders inside it.
   void release(const std::filesystem::path& folder);
   bool empty() const { return sources_.empty(); }
 

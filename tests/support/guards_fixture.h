@@ -17,6 +17,13 @@ class Guards : public ::testing::Test {
  protected:
   std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
   void write(const std::string& name, const std::string& text) const { write_file_atomically(path(name), text, {}); }
+  // A camera file and the photograph that it names, in "cap".
+  void write_capture() const {
+    std::filesystem::create_directories(path("cap/images"));
+    write("cap/transforms.json", R"({"camera_angle_x": 0.7, "w": 16, "h": 16, "frames": [{"file_path": "images/0.png",
+            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
+    write("cap/images/0.png", "\x89PNG of somebody");
+  }
   // Exit status of the program; {} in the arguments is replaced by the test's folder.
   int program(std::string arguments) const {
     for (std::size_t at = 0; (at = arguments.find("{}", at)) != std::string::npos;)

@@ -162,10 +162,7 @@ TEST_F(Guards, ExportsReplaceNoFilesThatOnlyHaveNamesOfTheScene) {
 TEST_F(Guards, AnotherSpellingOfAnOutputIsNotAnotherFile) {
   const std::string kettle = REBAKE_SOURCE "/samples/scenes/kettle";
   fs::copy(kettle, path("kettle"));
-  fs::create_directories(path("cap/images"));
-  write("cap/transforms.json", R"({"camera_angle_x": 0.7, "w": 16, "h": 16, "frames": [{"file_path": "images/0.png",
-            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
-  write("cap/images/0.png", "\x89PNG of somebody");
+  write_capture();
   write("notes.txt", "mine");
   write("user.glb", "mine");
   write("user.html", "mine");

@@ -144,12 +144,9 @@ TEST_F(Guards, PicturesOfOthersAreNotReplaced) {
 
 // Writing to a symbolic link replaces the file it leads to. Links to nothing stay.
 TEST_F(Guards, LinksToFilesOfOthersAreNotWrittenThrough) {
-  fs::create_directories(path("cap/images"));
   fs::create_directories(path("film"));
   fs::create_directories(path("links"));
-  write("cap/transforms.json", R"({"camera_angle_x": 0.7, "w": 16, "h": 16, "frames": [{"file_path": "images/0.png",
-            "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}]})");
-  write("cap/images/0.png", "\x89PNG of somebody");
+  write_capture();
   write("film/film.json", "{}");
   write("film/00001.png", "\x89PNG of somebody");
   fs::copy(REBAKE_SOURCE "/samples/scenes/kettle", path("other"));

@@ -1,12 +1,9 @@
 // `rebake render` and `rebake compare`.
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "mesh_ops/base/file_lock.h"
 #include "mesh_ops/base/files.h"
-#include "mesh_ops/formats/export.h"
 #include "mesh_ops/formats/images/png_writer.h"
 #include "render/image.h"
 #include "tests/support/cli_fixture.h"
