@@ -5,6 +5,7 @@ Exports a scene with two objects, views and keyframes, plain and compressed. Che
 Rebake's of the same file: all take one sample in the middle of each pixel. In .ci/deep.
 """
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -191,8 +192,10 @@ def validate(at):
 
 def check_in_blender(at, own):
     (at / "b.py").write_text(IN_BLENDER)
+    # Blender takes modules from the first python3 of PATH; Debian's has NumPy.
+    debian = {**os.environ, "PATH": f"/usr/bin:{os.environ['PATH']}"}
     said = run("blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python", at / "b.py", "--", at / "scene.glb",
-               at / "blender.png", SIDE)
+               at / "blender.png", SIDE, env=debian)
     end = next(line for line in said.splitlines() if line.startswith("END"))
     poses = int(next(line for line in said.splitlines() if line.startswith("KEYS")).split()[1]) - 1
     print(f"Blender: {end[4:]} after a second, {poses} poses of the bend")
