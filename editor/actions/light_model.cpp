@@ -208,12 +208,31 @@ NodePtr use_light_model(const TransferModel& model, const Scene& scene, const fs
     // Drags of joined objects use no model.
     const std::vector<BakedBody> bodies = bodies_of(*placed.node->object);
     if (bodies.size() != 1 || surface_hash(*bodies.front().object) != model.body) continue;
-    cache().keep(transfer_model_key(*bodies.front().object, model.sites), bytes_of(model));
+    const std::string key = transfer_model_key(*bodies.front().object, model.sites), bytes = bytes_of(model);
+    cache().keep(key, bytes);
+    if (cache().find(key) != bytes)
+      throw Error("the model cannot be stored in the result cache: is its disk full, write-protected or too small?");
     return find(scene, placed.node->id);
   }
   const std::string why = "was trained for another object: no object in the scene has its triangles and texels";
   if (!file.empty()) throw FileError(file, why);
   throw Error("the model " + why);
+}
+
+bool store_light_model(const TransferModel& model, const Scene& scene, const fs::path& out,
+                       const SourceGuard& sources) {
+  const bool uses = worth_using(model) && result_cache();
+  if (!out.empty()) {
+    try {
+      check_light_model_output(out, sources);  // it may have appeared since
+      write_file_atomically(out, bytes_of(model), sources);
+    } catch (const std::exception&) {
+      if (uses) use_light_model(model, scene, {});  // training takes minutes
+      throw;
+    }
+  }
+  if (uses) use_light_model(model, scene, {});
+  return uses;
 }
 
 bool forget_light_model(const Scene& scene, const NodePtr& node, const Progress& progress) {

@@ -34,8 +34,13 @@ TransferModel read_light_model(const std::filesystem::path& path);
 
 /// Stores a model in the result cache for the object of the scene that it was trained for: drags of the object use it
 /// from now on. Returns the object's node. `file`: of the model, for errors; empty: none. Throws Error if there is no
-/// such object or no cache; FileError if `file` is not empty.
+/// such object or no cache, or if the cache cannot store it; FileError if `file` is not empty.
 NodePtr use_light_model(const TransferModel& model, const Scene& scene, const std::filesystem::path& file);
+
+/// Writes a trained model to `out` unless that is empty, and has drags use it if it is worth using and there is a
+/// result cache. Returns whether they do. Throws FileError; the cache has the model also if writing fails.
+bool store_light_model(const TransferModel& model, const Scene& scene, const std::filesystem::path& out,
+                       const SourceGuard& sources);
 
 /// Removes the model of a node's object from the cache. Returns whether there was one.
 bool forget_light_model(const Scene& scene, const NodePtr& node, const Progress& progress);

@@ -23,10 +23,10 @@ void run(Session& session, const SaveProjectAction& action) {
     session.say(fmt::format("note: {} has more edits already; a later line of this script saves it", action.out));
     return;
   }
-  const std::vector<std::string> warnings = session.document.save(action.out, session.progress);
+  const SavedProject saved = session.document.save(action.out, session.progress);
   session.outputs.push_back(action.out);
   session.say("saved " + action.out);
-  for (const std::string& warning : warnings) session.say("warning: " + warning);
+  for (const std::string& warning : saved.warnings) session.say("warning: " + warning);
 }
 
 REBAKE_DESCRIBE_ACTION(

@@ -105,16 +105,12 @@ void run(Session& session, const TrainLightAction& action) {
     throw FieldError("out", "is missing: name a file, because the result cache is off (REBAKE_RESULTS is empty)");
   const TransferModel model = trained_light_model(scene, node, edits, options, session.progress);
   for (const std::string& fact : facts_of(model)) session.say(fact);
-  if (!action.out.empty()) {
-    check_light_model_output(action.out, sources);  // it may have appeared since
-    write_file_atomically(action.out, bytes_of(model), sources);
-    session.outputs.push_back(action.out);
-  }
+  const bool uses = store_light_model(model, scene, action.out, sources);
+  if (!action.out.empty()) session.outputs.push_back(action.out);
   if (!worth_using(model)) {
     session.say(
         fmt::format("drags of \"{}\" do not use the model: it is no better than rotating the transfer", node->name));
-  } else if (result_cache()) {
-    use_light_model(model, scene, {});
+  } else if (uses) {
     session.say(fmt::format("drags of \"{}\" now use the model", node->name));
   } else {
     session.say("drags do not use the model, because the result cache is off (REBAKE_RESULTS is empty)");

@@ -60,20 +60,26 @@ void print_table(const std::vector<BatchResult>& results) {
   fmt::print("{}, {} failed\n", counted(results.size(), "scene"), failed);
 }
 
-// Checks that a report may be written: throws FileError if a file exists that is not an earlier report. Unlinks an
-// earlier report that has other hard links, so that their content stays.
-void prepare_report(const std::filesystem::path& report) {
+// Whether a text is that of a report. A killed batch leaves an incomplete last line.
+bool is_report(const std::string& text) {
+  const auto is_result = [](const std::string& line) {
+    const auto result = nlohmann::json::parse(line, nullptr, false);
+    return result.is_object() && result.contains("scene") && result.contains("status") && result.contains("seconds");
+  };
+  std::size_t at = 0;
+  for (std::size_t end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
+    if (!is_result(text.substr(at, end - at))) return false;
+  return at == text.size() || text.substr(at).starts_with('{');
+}
+
+// Throws FileError if a file exists that is not an earlier report.
+void check_report(const std::filesystem::path& report) {
   std::error_code error;
   refuse_dangling_link(report);
   if (!std::filesystem::is_regular_file(report, error)) return;
   refuse_write_protected(report);
-  const std::string text = read_file(report);
-  const auto first = nlohmann::json::parse(text.substr(0, text.find('\n')), nullptr, false);
-  if (!text.empty() &&
-      (!first.is_object() || !first.contains("scene") || !first.contains("status") || !first.contains("seconds")))
+  if (!is_report(read_file(report)))
     throw FileError(report, "is not a batch report; name another file with --report, or remove this one");
-  if (std::filesystem::hard_link_count(report, error) > 1)
-    std::filesystem::remove(std::filesystem::canonical(report, error), error);
 }
 
 }  // namespace
@@ -123,15 +129,19 @@ void describe_batch(SubcommandDescription& command) {
     batch.report = report;
     batch_scenes(batch);
     std::filesystem::create_directories(batch.out, error);
+    refuse_dangling_link(report);  // before the lock creates a missing file
     const FileLock lock(report);
     if (!lock.held())
       throw FieldError("--report", report.string() + " is being written by another batch; name another file");
-    prepare_report(report);
+    check_report(report);
     // Replaces an earlier report only when there is a result.
     std::ofstream lines;
     const auto open = [&] {
       if (lines.is_open()) return;
-      prepare_report(report);  // once more: it may have appeared since
+      check_report(report);  // once more: it may have appeared since
+      // Other hard links keep their content.
+      if (std::filesystem::hard_link_count(report, error) > 1)
+        std::filesystem::remove(std::filesystem::canonical(report, error), error);
       lines.open(report);
       if (!lines) throw FileError(report, "cannot be written");
     };

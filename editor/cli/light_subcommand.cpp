@@ -35,10 +35,7 @@ void say(const TransferModel& model) {
   for (const std::string& fact : facts_of(model)) fmt::print("{}\n", fact);
 }
 
-void keep(const TransferModel& model, const Scene& scene, const std::string& file) {
-  use_light_model(model, scene, file);
-  fmt::print("stored: drags of this object now use the model\n");
-}
+void say_stored() { fmt::print("stored: drags of this object now use the model\n"); }
 
 void train(const Options& options) {
   for (const std::string& path : options.paths)
@@ -64,16 +61,13 @@ void train(const Options& options) {
   const TransferModel model = trained_light_model(scene, node, options.edits, learning, progress_bar());
   clear_progress_bar();
   say(model);
-  if (!out.empty()) {
-    check_light_model_output(out, sources);  // it may have appeared since
-    write_file_atomically(out, bytes_of(model), sources);
-  }
+  const bool uses = store_light_model(model, scene, out, sources);
   if (!worth_using(model)) {
     const std::string why = "it is no better than rotating the transfer, which drags use without a model";
     if (out.empty()) throw Error("the model is not stored: " + why);
     fmt::print("not stored: {}\n", why);
-  } else if (out.empty() || result_cache()) {
-    keep(model, scene, {});
+  } else if (uses) {
+    say_stored();
   }
 }
 
@@ -85,7 +79,8 @@ void keep_model(const Options& options) {
   auto [scene, sources] =
       load_scenes({options.paths.begin() + 1, options.paths.end()}, options.reading, progress_bar());
   clear_progress_bar();
-  keep(model, scene, options.paths.front());
+  use_light_model(model, scene, options.paths.front());
+  say_stored();
 }
 
 }  // namespace

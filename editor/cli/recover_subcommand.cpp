@@ -50,9 +50,9 @@ Document::OtherProject other_project(const Recovery& options) {
 // Saves a project with moved sources again, with their new paths.
 void relink_project(const Recovery& options) {
   Document document = Document::open(options.journal, links_of(options.sources), progress_bar());
-  const std::vector<std::string> warnings = document.save(options.out, progress_bar(), other_project(options));
+  const SavedProject saved = document.save(options.out, progress_bar(), other_project(options));
   clear_progress_bar();
-  for (const std::string& warning : warnings) print_message("warning: " + warning);
+  for (const std::string& warning : saved.warnings) print_message("warning: " + warning);
   const std::size_t edits = document.history().undo_count();
   fmt::print("{} {} of {} saved in {}\n", edits, edits == 1 ? "edit" : "edits", printable(options.journal),
              printable(options.out));
@@ -80,7 +80,8 @@ void recover(Recovery options) {
   // An empty project would block the next attempt.
   const bool nothing = recovered.edits == 0;
   if (!nothing)
-    for (const std::string& warning : recovered.document.save(options.out, progress_bar(), other_project(options)))
+    for (const std::string& warning :
+         recovered.document.save(options.out, progress_bar(), other_project(options)).warnings)
       print_message("warning: " + warning);
   clear_progress_bar();
   const std::size_t undone = recovered.document.history().redo_count();

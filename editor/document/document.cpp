@@ -107,7 +107,8 @@ std::vector<JournalLine> lines_to_replay(const Journal::Contents& contents, cons
 
 Document::Recovered Document::recover(const fs::path& path, const SourceLinks& links, const Progress& progress) {
   Journal::Contents contents;
-  std::optional<Journal> journal = Journal::resume(path, contents);
+  // Absolute, because the current folder may change while the journal is written.
+  std::optional<Journal> journal = Journal::resume(absolute_path(path), contents);
   Recovered result;
   History& history = result.document.history_;
   result.torn = contents.torn;
@@ -344,7 +345,7 @@ void Document::check_project(const fs::path& project, OtherProject other) const 
   }
 }
 
-std::vector<std::string> Document::save(const fs::path& project, const Progress& progress, OtherProject other) {
+SavedProject Document::save(const fs::path& project, const Progress& progress, OtherProject other) {
   if (!starts_empty_)
     throw Error("the document did not begin empty, so it cannot be saved as a project: import its contents instead");
   std::vector<History::Entry> entries = history_.entries();
@@ -355,14 +356,14 @@ std::vector<std::string> Document::save(const fs::path& project, const Progress&
   const bool is_known = projects_.contains(fs::weakly_canonical(project));
   const std::vector<std::string> before =
       is_known || other != OtherProject::keep_more ? std::vector<std::string>() : edits_in(project);
-  std::vector<std::string> warnings = write_project(project, entries, sources(), progress);
+  SavedProject saved = write_project(project, entries, sources(), progress);
   projects_[fs::weakly_canonical(project)] = content_hash(read_file(project));
   const std::vector<std::string> after = before.empty() ? before : edits_in(project);
   if (const auto differs = std::mismatch(before.begin(), before.end(), after.begin(), after.end()).first;
       differs != before.end())
-    warnings.push_back("it replaced a project with " +
-                       counted(static_cast<std::size_t>(before.end() - differs), "other edit"));
-  return warnings;
+    saved.warnings.push_back("it replaced a project with " +
+                             counted(static_cast<std::size_t>(before.end() - differs), "other edit"));
+  return saved;
 }
 
 void Document::discard_journal() {

@@ -7,6 +7,7 @@
 #include "editor/document/applied_edits.h"
 #include "editor/document/history.h"
 #include "editor/document/journal.h"
+#include "editor/document/project.h"
 #include "editor/document/sources.h"
 #include "mesh_ops/formats/scene_files.h"
 
@@ -97,11 +98,11 @@ class Document {
     keep,       ///< throw FileError
     replace     ///< replace it; for people who have confirmed it
   };
-  /// Writes the project. Returns warnings: for each missing or changed source, without which the project cannot be
-  /// opened, and for replaced edits. Throws FileError, also if the file was changed after this document opened or saved
-  /// it (unless `other` is replace), and if it exists and is no project.
-  std::vector<std::string> save(const std::filesystem::path& project, const Progress& progress = {},
-                                OtherProject other = OtherProject::keep_more);
+  /// Writes the project. Warns of missing and changed sources, and of replaced edits. Throws FileError, also if the
+  /// file was changed after this document opened or saved it (unless `other` is replace), and if it exists and is no
+  /// project.
+  SavedProject save(const std::filesystem::path& project, const Progress& progress = {},
+                    OtherProject other = OtherProject::keep_more);
   /// Ends and removes the journal, after the work was saved or given up.
   void discard_journal();
 

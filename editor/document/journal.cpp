@@ -181,11 +181,18 @@ class Journal::File {
   // Removes an incomplete last line before the first append; a journal that is only read stays as it is.
   void mend() {
     if (!torn_) return;
-    const Torn torn = *torn_;
+    Torn torn = *torn_;
     if (file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
     torn_.reset();
-    if (!torn.begun) append({json{{"rebake_journal", journal_version}}});
-    if (!torn.ends_in_newline) append_text("\n");
+    try {
+      if (!torn.begun) append({json{{"rebake_journal", journal_version}}});
+      torn.begun = true;
+      if (!torn.ends_in_newline) append_text("\n");
+    } catch (...) {
+      torn.bytes = size();
+      torn_ = torn;  // the next append tries again
+      throw;
+    }
   }
 
   // Writes at the end and syncs.

@@ -52,8 +52,8 @@ bool is_project_file(const fs::path& path) {
   return path.extension() == ".rebake" && fs::is_regular_file(path, error);
 }
 
-std::vector<std::string> write_project(const fs::path& path, const std::vector<History::Entry>& entries,
-                                       const SourceGuard& guard, const Progress& progress) {
+SavedProject write_project(const fs::path& path, const std::vector<History::Entry>& entries, const SourceGuard& guard,
+                           const Progress& progress) {
   const fs::path folder = real_folder_of(path);
   json root = {{"rebake_project", project_version - 1}, {"sources", json::array()}, {"edits", json::array()}};
   for (std::size_t k = 0; k < entries.size(); ++k) {
@@ -78,14 +78,16 @@ std::vector<std::string> write_project(const fs::path& path, const std::vector<H
     if (std::find(root["sources"].begin(), root["sources"].end(), entry) == root["sources"].end())
       root["sources"].push_back(entry);
   }
-  std::vector<std::string> warnings;
+  SavedProject saved;
   for (const json& source : root["sources"]) {
     const fs::path read = source_path(folder, source.at("path"));
-    if (const std::string trouble = source_problem(read, source.at("content"), {}); !trouble.empty())
-      warnings.push_back(
-          fmt::format("{} {}: the project cannot be opened without the original; save a scene folder to keep the "
-                      "present scene",
-                      read.string(), trouble));
+    const std::string trouble = source_problem(read, source.at("content"), {});
+    if (trouble.empty()) continue;
+    saved.opens = false;
+    saved.warnings.push_back(
+        fmt::format("{} {}: the project cannot be opened without the original; save a scene folder to keep the "
+                    "present scene",
+                    read.string(), trouble));
   }
   try {
     root["checksum"] = checksum(root);
@@ -93,7 +95,7 @@ std::vector<std::string> write_project(const fs::path& path, const std::vector<H
   } catch (const json::type_error&) {
     throw FileError(path, "cannot be written: a name or path is not valid UTF-8");
   }
-  return warnings;
+  return saved;
 }
 
 std::vector<fs::path> project_sources(const fs::path& path) {

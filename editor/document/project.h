@@ -30,10 +30,16 @@ inline constexpr int project_version = 3;
 /// True for a regular file whose name ends in .rebake.
 bool is_project_file(const std::filesystem::path& path);
 
-/// Writes the project atomically and syncs it. Imports must be completed(). Returns a warning for each missing or
-/// changed source, without which the project cannot be opened. Throws FileError, also if `guard` protects the path.
-std::vector<std::string> write_project(const std::filesystem::path& path, const std::vector<History::Entry>& entries,
-                                       const SourceGuard& guard, const Progress& progress = {});
+/// What writing a project found.
+struct SavedProject {
+  std::vector<std::string> warnings;
+  bool opens = true;  ///< false if a source is missing or has changed, so that the project cannot be opened
+};
+
+/// Writes the project atomically and syncs it. Imports must be completed(). Warns of each missing or changed source.
+/// Throws FileError, also if `guard` protects the path.
+SavedProject write_project(const std::filesystem::path& path, const std::vector<History::Entry>& entries,
+                           const SourceGuard& guard, const Progress& progress = {});
 
 /// The absolute paths of a project's sources and of all files that its edits read; empty if the file is no readable
 /// project.

@@ -32,7 +32,7 @@ ResultStore::ResultStore(fs::path folder, std::uint64_t limit) : folder_(std::mo
 
 std::shared_ptr<ResultStore> ResultStore::user_store() {
   if (const char* chosen = std::getenv("REBAKE_RESULTS"))
-    return *chosen != '\0' ? std::make_shared<ResultStore>(chosen) : nullptr;
+    return *chosen != '\0' ? std::make_shared<ResultStore>(absolute_path(chosen)) : nullptr;
   const auto cache = user_folder("XDG_CACHE_HOME", ".cache");
   return cache ? std::make_shared<ResultStore>(*cache / "rebake" / "results") : nullptr;
 }

@@ -215,7 +215,7 @@ void add_document_methods(py::class_<PyDocument>& type) {
             warnings = notes_of(session, SaveAction{path.string()});
             return;
           }
-          for (const std::string& warning : session.document.save(path, session.progress))
+          for (const std::string& warning : session.document.save(path, session.progress).warnings)
             warnings.push_back("warning: " + warning);
         });
         warn_of_notes(warnings);

@@ -124,6 +124,9 @@ void refuse_foreign_content(const fs::path& folder) {
         if (format.folder != nullptr &&
             (place == folder ? markers.contains(format.marker) : std::string_view(format.marker) != "scene.json"))
           found->second.merge(format.folder->own_files(place));
+    if (place == folder && found->second.empty())
+      throw FileError(folder,
+                      "has a damaged scene, and which files belong to it is unknown; choose a new or empty folder");
     return found->second.contains(file.filename().string());
   };
   if (!known && !fs::is_empty(folder)) refuse(fs::directory_iterator(folder)->path());

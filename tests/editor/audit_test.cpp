@@ -216,7 +216,7 @@ class RandomScript {
 
 TEST(RandomAudit, OmittedEffectsStayWithinBounds) {
   int left_out = 0;
-  for (int seed = 1; seed <= cases(3, 200); ++seed) {
+  for (int seed = 1; seed <= cases(3, 60); ++seed) {
     RandomScript script(static_cast<unsigned>(seed));
     const Scene scene = script.scene();
     SCOPED_TRACE("seed " + std::to_string(seed) + ":\n" + script.said());

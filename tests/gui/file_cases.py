@@ -58,6 +58,26 @@ class FileTest(WindowCase):
         editor.tool("click", 1)
         self.assertEqual(editor.process.wait(20), 0)
 
+    def test_closing_stops_when_nothing_can_open_the_saved_project(self):
+        source = self.folder / "source"
+        shutil.copytree(KETTLE, source)
+        editor = self.open(source)
+        editor.until_ops("import")
+        editor.key("ctrl+a")
+        editor.until_ops("import", "select")
+        source.rename(self.folder / "moved")
+        editor.key("ctrl+q")
+        editor.click("dialog/save")
+        editor.answer(str(self.folder / "kettle.rebake"))
+        until((self.folder / "kettle.rebake").is_file, "the project")
+        editor.settle()
+        self.assertIsNone(editor.process.poll(), "the window has the only copy of the work")
+        journals = list((self.screen.home / "state/rebake/journals").iterdir())
+        self.assertEqual(len(journals), 1)
+        editor.key("ctrl+q")
+        self.assertTrue(editor.state()["asks"], "the work is unsaved")
+        editor.click("dialog/cancel")
+
     def test_edits_during_the_save_before_closing_are_asked_about(self):
         editor = self.open(KETTLE)
         editor.until_ops("import")

@@ -99,8 +99,8 @@ std::vector<Vec3> all_hard_points(const Cage& cage) {
 std::vector<Vec3> hard_points(const Cage& cage) {
   const std::vector<Vec3> points = all_hard_points(cage);
   std::vector<Vec3> some;
-  // A prime, so that all kinds of points at all distances are included.
-  const auto step = static_cast<std::size_t>(cases(11, 1));
+  // Primes, so that all kinds of points at all distances are included.
+  const auto step = static_cast<std::size_t>(cases(11, 1, 53));
   for (std::size_t k = 0; k < points.size(); k += step) some.push_back(points[k]);
   return some;
 }
@@ -117,7 +117,7 @@ std::vector<Vec3> inside_points(const Cage& cage) {
     if (std::abs(sum / (4 * std::acos(-1.0)) - 1) < 1e-3) points.push_back(p);
   }
   EXPECT_GE(points.size(), 20U);
-  const auto step = static_cast<std::size_t>(points.size() > 1000 ? cases(5, 1) : 1);
+  const auto step = static_cast<std::size_t>(points.size() > 1000 ? cases(5, 1, 23) : 1);
   std::vector<Vec3> some;
   for (std::size_t k = 0; k < points.size(); k += step) some.push_back(points[k]);
   return some;

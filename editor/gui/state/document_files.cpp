@@ -223,23 +223,27 @@ void Project::relink(bool go_on_without) {
 
 void Project::save(const fs::path& file, Document::OtherProject other) {
   auto saved = std::make_shared<Scene>();
-  auto warnings = std::make_shared<std::vector<std::string>>();
+  auto written = std::make_shared<SavedProject>();
   worker_.start(
       "saving",
-      [file, other, saved, warnings](Session& session) {
-        *warnings = session.document.save(file, session.progress, other);
+      [file, other, saved, written](Session& session) {
+        *written = session.document.save(file, session.progress, other);
         *saved = session.scene();
         // Perhaps the folder of journals can be written by now.
         if (!session.document.keeps_journal())
-          if (std::string missing = try_keep_journal(session.document); !missing.empty()) warnings->push_back(missing);
+          if (std::string missing = try_keep_journal(session.document); !missing.empty())
+            written->warnings.push_back(missing);
       },
-      [this, file, saved, warnings] {
+      [this, file, saved, written] {
         path = file;
-        saved_ = *saved;
         settings_.remember(file.string());
         messages_.say("Saved " + file.string());
-        for (const std::string& warning : *warnings) messages_.fail(warning);
-        if (after_save) std::exchange(after_save, nullptr)();
+        for (const std::string& warning : written->warnings) messages_.fail(warning);
+        const auto next = std::exchange(after_save, nullptr);
+        // The work is lost if the window closes now, because nothing can open the project.
+        if (!written->opens) return;
+        saved_ = *saved;
+        if (next) next();
       },
       // After a failed save the follow-up is dropped, so that a later save does not trigger it.
       [this] { after_save = nullptr; });

@@ -1,6 +1,7 @@
 #include "editor/gui/ui/announce.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -28,6 +29,12 @@ AnnounceState& told() {
     if (path == nullptr) return made;
     std::signal(SIGPIPE, SIG_IGN);
     made.pipe = ::open(path, O_WRONLY | O_CLOEXEC);
+    // Text that somebody keeps in a file would be overwritten.
+    struct stat about {};
+    if (made.pipe >= 0 && (::fstat(made.pipe, &about) != 0 || S_ISREG(about.st_mode))) {
+      ::close(made.pipe);
+      made.pipe = -1;
+    }
     return made;
   }();
   return one;

@@ -9,6 +9,7 @@
 #include "editor/studies/posed_body.h"
 #include "mesh_ops/base/duration.h"
 #include "mesh_ops/base/error.h"
+#include "mesh_ops/base/files.h"
 #include "mesh_ops/base/hash.h"
 #include "mesh_ops/light/learned/disk_chart.h"
 
@@ -24,10 +25,13 @@ class TraceCache {
  public:
   TraceCache(const fs::path& file, std::uint64_t hash, std::size_t block) : file_(file), block_(block) {
     if (file_.empty()) return;
-    // Links to other files are removed, so that those are not written to.
+    // Links to other files are replaced by a copy, so that those are not written to.
     if (std::error_code error;
-        fs::is_symlink(file_, error) || (fs::exists(file_, error) && fs::hard_link_count(file_, error) > 1))
+        fs::is_symlink(file_, error) || (fs::exists(file_, error) && fs::hard_link_count(file_, error) > 1)) {
+      const std::string bytes = fs::exists(file_, error) ? read_file(file_) : "";
       fs::remove(file_);
+      write_file_atomically(file_, bytes, {});
+    }
     std::ifstream in(file_, std::ios::binary);
     std::uint64_t known = 0;
     if (in.read(reinterpret_cast<char*>(&known), sizeof known) && known == hash) {

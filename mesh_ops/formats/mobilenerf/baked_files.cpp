@@ -120,7 +120,7 @@ std::set<std::string> own_baked_files(const fs::path& folder) {
   std::error_code error;
   if (is_report_of(folder, folder / training_report)) names.insert(training_report);
   if (fs::is_regular_file(folder / "mlp.json", error) && has_baked_decoder(folder))
-    names.merge(names_of_scene(folder, baked_files, is_baked_file_name));
+    names.merge(names_of_scene(folder, baked_files));
   for (const std::string_view name : sidecar_names) {
     names.erase(std::string(name));
     if (is_sidecar(folder / name)) names.emplace(name);

@@ -21,17 +21,14 @@ std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFil
 }
 
 std::set<std::string> names_of_scene(const std::filesystem::path& folder,
-                                     std::vector<std::filesystem::path> (*files)(const std::filesystem::path& folder),
-                                     bool (*is_file_name)(const std::string& name)) {
-  std::set<std::string> names;
+                                     std::vector<std::filesystem::path> (*files)(const std::filesystem::path& folder)) {
   try {
+    std::set<std::string> names;
     for (const std::filesystem::path& file : files(folder)) names.insert(file.string());
+    return names;
   } catch (const FileError&) {
-    std::error_code error;
-    for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(folder, error))
-      if (const std::string name = entry.path().filename().string(); is_file_name(name)) names.insert(name);
+    return {};
   }
-  return names;
 }
 
 }  // namespace rebake

@@ -17,10 +17,9 @@ SourceFile source_file(const std::string& name, std::string_view bytes);
 /// The bytes of a source file, if they have not changed since it was read; nothing if they have, or if it is gone.
 std::optional<std::string> unchanged_bytes(const Origin& origin, const SourceFile& file);
 
-/// The names of a folder's scene files: those that `files` gives, or if it throws FileError because the scene is
-/// damaged, all that could be one by their name.
+/// The names of a folder's scene files, which `files` gives; none if it throws FileError, because in a damaged scene
+/// nobody knows which files belong to it.
 std::set<std::string> names_of_scene(const std::filesystem::path& folder,
-                                     std::vector<std::filesystem::path> (*files)(const std::filesystem::path& folder),
-                                     bool (*is_file_name)(const std::string& name));
+                                     std::vector<std::filesystem::path> (*files)(const std::filesystem::path& folder));
 
 }  // namespace rebake

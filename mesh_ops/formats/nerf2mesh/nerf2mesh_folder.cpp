@@ -62,31 +62,11 @@ bool is_nerf2mesh_folder(const fs::path& folder) {
 
 bool has_nerf2mesh_decoder(const fs::path& folder) { return is_nerf2mesh_mlp(read_file(folder / "mlp.json")); }
 
-namespace {
-
-bool is_file_name(const std::string& name) {
-  if (name == "mlp.json") return true;
-  for (const auto& [prefix, endings] :
-       {std::pair<std::string_view, std::vector<std::string_view>>{"mesh_", {".obj", ".mtl"}},
-        {"feat0_", {".jpg", ".png"}},
-        {"feat1_", {".jpg", ".png"}}}) {
-    std::string_view rest = name;
-    if (!rest.starts_with(prefix)) continue;
-    rest.remove_prefix(prefix.size());
-    const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
-    rest.remove_prefix(digits);
-    return digits > 0 && std::ranges::find(endings, rest) != endings.end();
-  }
-  return false;
-}
-
-}  // namespace
-
 std::set<std::string> own_nerf2mesh_files(const fs::path& folder) {
   std::set<std::string> names;
   std::error_code error;
   if (!fs::is_regular_file(folder / "mlp.json", error) || !has_nerf2mesh_decoder(folder)) return names;
-  names.merge(names_of_scene(folder, nerf2mesh_files, is_file_name));
+  names.merge(names_of_scene(folder, nerf2mesh_files));
   return names;
 }
 

@@ -24,7 +24,7 @@ Affine nerf2mesh_to_y_up();
 bool is_nerf2mesh_folder(const std::filesystem::path& folder);
 /// Whether its mlp.json is that of nerf2mesh.
 bool has_nerf2mesh_decoder(const std::filesystem::path& folder);
-/// Names of the files in a folder that are read with its scene; in a damaged folder, those that could be.
+/// Names of the files in a folder that are read with its scene; none if the scene is damaged.
 std::set<std::string> own_nerf2mesh_files(const std::filesystem::path& folder);
 /// The files that read_nerf2mesh_folder() reads, relative to the folder.
 std::vector<std::filesystem::path> nerf2mesh_files(const std::filesystem::path& folder);

@@ -8,6 +8,7 @@
 
 #include "editor/edits/shared_result_cache.h"
 #include "mesh_ops/base/files.h"
+#include "tests/support/power_loss.h"
 #include "tests/support/script_fixture.h"
 
 namespace rebake::test {
@@ -19,7 +20,10 @@ class MemoryCache final : public ResultCache {
     const auto found = entries.find(key);
     return found == entries.end() ? std::nullopt : std::optional(found->second);
   }
-  void keep(const std::string& key, std::string_view bytes) override { entries[key] = bytes; }
+  void keep(const std::string& key, std::string_view bytes) override {
+    if (!full) entries[key] = bytes;
+  }
+  bool full = false;
   std::map<std::string, std::string> entries;
 };
 
@@ -63,6 +67,24 @@ TEST_F(LightModel, IsTrainedOnTheHistoryUsedForgottenAndLoaded) {
   EXPECT_EQ(models(), 0U);
   run(R"({"op": "forget_light_model", "node": "ball"})");
   EXPECT_NE(said().find("has no trained model"), std::string::npos);
+}
+
+TEST_F(LightModel, FailedWritesAreReportedAndLoseNoModel) {
+  run(import + bend);
+  const std::string train = R"({"op": "train_light", "out": "{here}/m.light", )" + few + "}";
+  run(train);
+  ASSERT_EQ(models(), 1U) << said();
+  run(R"({"op": "forget_light_model"})");
+  {
+    PowerLoss disk;
+    disk.fail_at(0, ENOSPC);
+    const ReplacedFileCalls full(disk);
+    expect_error(train, "m.light");
+  }
+  EXPECT_EQ(models(), 1U);
+  run(R"({"op": "forget_light_model"})");
+  cache_->full = true;
+  expect_error(R"({"op": "use_light_model", "model": "{here}/m.light"})", "cannot be stored in the result cache");
 }
 
 TEST_F(LightModel, OfAnEditedObjectIsThatOfTheObjectAsRead) {

@@ -268,7 +268,7 @@ std::shared_ptr<const BakedObject> random_square(std::mt19937& random, int opaqu
 TEST(Plain, NeverWorseThanSideBySide) {
   std::mt19937 random(11);
   int held = 0;
-  for (int k = 0; k < cases(1, 20); ++k) {
+  for (int k = 0; k < cases(1, 6); ++k) {
     const double ratio = std::exp(std::uniform_real_distribution<double>(0, std::log(1000.0))(random));
     const auto few = static_cast<int>(8 + random() % 8), many = static_cast<int>(few * std::sqrt(ratio));
     const Scene scene = two(random_square(random, few), random_square(random, many));

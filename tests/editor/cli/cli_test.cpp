@@ -137,6 +137,13 @@ TEST_F(Cli, ReportsOverwriteOnlyReports) {
   const std::string before = read_file(in("kept.jsonl"));
   EXPECT_EQ(rebake_run(batch + in("b.jsonl")).code, 0);
   EXPECT_EQ(read_file(in("kept.jsonl")), before);
+  // Nor notes in one, nor what a link will lead to once its disk is there.
+  write_text(in("b.jsonl"), before + "my notes\n" + before);
+  EXPECT_EQ(rebake_run(batch + in("b.jsonl")).code, 1);
+  EXPECT_EQ(read_file(in("b.jsonl")), before + "my notes\n" + before);
+  std::filesystem::create_symlink(in("none.jsonl"), in("link.jsonl"));
+  EXPECT_EQ(rebake_run(batch + in("link.jsonl")).code, 1);
+  EXPECT_FALSE(std::filesystem::exists(in("none.jsonl")));
 }
 
 TEST_F(Cli, RejectsOutputsOverInputs) {

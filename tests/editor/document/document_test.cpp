@@ -508,10 +508,10 @@ TEST_F(DocumentTest, OtherProjectsAreReplacedWithAWarningOrNotAtAll) {
   EXPECT_THROW(other.save(path("p.rebake")), FileError) << "it has more edits";
   act(other, R"({"op": "background", "color": [0, 0, 1]})");
   EXPECT_THROW(other.save(path("p.rebake"), {}, Document::OtherProject::keep), FileError);
-  const std::vector<std::string> warnings = other.save(path("p.rebake"));
+  const std::vector<std::string> warnings = other.save(path("p.rebake")).warnings;
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0], "it replaced a project with 1 other edit");
-  EXPECT_TRUE(other.save(path("p.rebake")).empty());
+  EXPECT_TRUE(other.save(path("p.rebake")).warnings.empty());
 }
 
 }  // namespace

@@ -103,6 +103,42 @@ TEST_F(Recovery, ZerosAtTheEndAreDamageAndReadingChangesNothing) {
   EXPECT_EQ(again.edits, 3U);
 }
 
+TEST_F(Recovery, RepairsThatFailAreTriedAgain) {
+  const std::string bytes = journal(6);
+  for (const std::string& torn :
+       {bytes.substr(0, bytes.size() - 1), bytes.substr(0, bytes.size() - 9), std::string()}) {
+    write(path("torn"), torn);
+    std::size_t edits = 0;
+    {
+      Document::Recovered read = Document::recover(path("torn"));
+      edits = read.edits;
+      for (int call = 0; call < 2; ++call) {
+        PowerLoss full;
+        full.fail_at(call, ENOSPC);
+        const ReplacedFileCalls fails(full);
+        EXPECT_THROW(read.document.edit(Background{}), FileError) << call;
+      }
+      read.document.edit(Background{});
+    }
+    const Document::Recovered again = Document::recover(path("torn"));
+    EXPECT_FALSE(again.torn) << torn.size();
+    EXPECT_TRUE(again.lost.empty()) << torn.size();
+    EXPECT_EQ(again.edits, edits + 1) << torn.size();
+  }
+}
+
+TEST_F(Recovery, JournalsOfRelativePathsStayWhereTheyAre) {
+  write(path("j"), journal(3));
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path());
+  {
+    Document::Recovered read = Document::recover("j");
+    fs::current_path(before);
+    read.document.edit(Background{});
+  }
+  EXPECT_EQ(Document::recover(path("j")).edits, 5U);
+}
+
 TEST_F(Recovery, DoesNotAppendToOlderJournals) {
   const auto line = [](const std::string& text) { return hash_text(content_hash(text)) + " " + text + "\n"; };
   write(path("old"),
@@ -200,7 +236,8 @@ TEST_F(Recovery, RelinksTwoSourcesOfOnePath) {
   fs::rename(path("sources/ball"), path("first"));
   export_scene(scene_of(made_object({.columns = 6, .rows = 2})), path("sources/ball"), {});
   import();
-  const std::vector<std::string> warnings = document.save(path("p.rebake"));
+  const std::vector<std::string> warnings = document.save(path("p.rebake")).warnings;
+  EXPECT_FALSE(document.save(path("q.rebake")).opens);
   ASSERT_EQ(warnings.size(), 1U) << "the first source is missing";
   EXPECT_NE(warnings[0].find("has changed since it was imported"), std::string::npos) << warnings[0];
   document = Document();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "mesh_ops/base/files.h"
@@ -87,6 +88,20 @@ TEST(ResultStore, RemovesLeftoversOfKilledWrites) {
   EXPECT_FALSE(fs::exists(folder.path() / (key("old") + ".result.x.rebake-partial")));
   EXPECT_TRUE(fs::exists(folder.path() / (key("new") + ".result.x.rebake-partial")))
       << "another process may be writing it";
+}
+
+TEST(ResultStore, StaysWhereItWasWhenTheFolderChanges) {
+  const TemporaryFolder folder;
+  const fs::path before = fs::current_path();
+  const char* const was = std::getenv("REBAKE_RESULTS");
+  const std::string kept = was != nullptr ? was : "";
+  fs::current_path(folder.path());
+  ::setenv("REBAKE_RESULTS", "results", 1);
+  const auto store = ResultStore::user_store();
+  fs::current_path(before);
+  was != nullptr ? ::setenv("REBAKE_RESULTS", kept.c_str(), 1) : ::unsetenv("REBAKE_RESULTS");
+  store->keep("k", "bytes");
+  EXPECT_EQ(files_in(folder.path() / "results"), 1U);
 }
 
 TEST(ResultStore, IgnoresUnwritableFolder) {

@@ -96,7 +96,7 @@ const std::array<Kind, 3> kinds{Kind{random_wedge, 2e-13}, Kind{random_lattice, 
 void expect_linear_precision(Make make) {
   std::mt19937_64 random(1);
   constexpr int points_per_cage = 32;
-  for (int k = 0; k < cases(30, 2100); ++k) {
+  for (int k = 0; k < cases(30, 700, 9); ++k) {
     const Kind& kind = kinds[static_cast<std::size_t>(k) % kinds.size()];
     const auto [name, cage] = kind.cage(random);
     std::vector<Vec3> points;
@@ -118,7 +118,7 @@ TEST(CageProperty, GreenIsLinearlyPreciseNearRandomSurfaces) { expect_linear_pre
 void expect_agreement_with_120_digits(Make make, std::vector<Gold> (*exact)(const Cage&, const Gold3&)) {
   std::mt19937_64 random(2);
   int compared = 0;
-  for (int k = 0; k < cases(60, 3000); ++k) {
+  for (int k = 0; k < cases(60, 900, 21); ++k) {
     const auto [name, cage] = kinds[static_cast<std::size_t>(k) % kinds.size()].cage(random);
     const double size = diagonal_of(cage), scale = frame_of(cage).scale;
     std::vector<Vec3> points;
@@ -186,7 +186,7 @@ double far_error(const Cage& cage, std::mt19937_64& random, int count) {
 
 TEST(CageProperty, MeanValueHasThirteenDigitsUpToTenDiagonals) {
   std::mt19937_64 random(7);
-  for (int k = 0; k < cases(10, 400); ++k) {
+  for (int k = 0; k < cases(10, 200, 10); ++k) {
     const RandomCage of = k % 2 == 0 ? random_lattice(random) : random_star(random);
     EXPECT_LE(far_error(of.cage, random, 24), 1e-13) << of.name;
   }
@@ -224,10 +224,10 @@ TEST(CageProperty, MeanValueHasNineDigitsOutsideThinCages) {
     for (const auto& [name, cage] :
          {std::pair("flat", box(1, 1, thin)), std::pair("rod", box(1, thin, thin)), std::pair("wedge", wedge(thin))}) {
       const double bound = std::max(1e-9, 5e-15 / thin);
-      EXPECT_LE(outside_error(cage, random, cases(10, 300)), bound) << name << ' ' << thin;
-      EXPECT_LE(far_error(cage, random, cases(10, 100)), 1e-9) << name << ' ' << thin << ", far";
+      EXPECT_LE(outside_error(cage, random, cases(10, 100, 3)), bound) << name << ' ' << thin;
+      EXPECT_LE(far_error(cage, random, cases(10, 50, 3)), 1e-9) << name << ' ' << thin << ", far";
     }
-  for (int k = 0; k < cases(6, 300); ++k) {
+  for (int k = 0; k < cases(6, 150, 3); ++k) {
     const RandomCage of = random_wedge(random);
     EXPECT_LE(outside_error(of.cage, random, 10), 1e-9) << of.name;
   }

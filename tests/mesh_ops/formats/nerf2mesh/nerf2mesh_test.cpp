@@ -9,6 +9,7 @@
 #include "mesh_ops/formats/formats.h"
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_folder.h"
 #include "mesh_ops/formats/nerf2mesh/nerf2mesh_mlp.h"
+#include "mesh_ops/formats/scene_files.h"
 #include "mesh_ops/texture/decoder_bounds.h"
 #include "mesh_ops/training/texel_colors.h"
 #include "tests/support/made_scenes.h"
@@ -182,6 +183,17 @@ TEST(Nerf2Mesh, EmptyMeshesDoNotCount) {
   const Scene scene = read_any(folder.path() / "n", Axes::y_up);
   format_named("nerf2mesh").write(scene, folder.path() / "out", {}, {});
   EXPECT_EQ(read_any(folder.path() / "out", Axes::y_up).roots[0]->object->sets.size(), 1U);
+}
+
+// Which of two images belongs to a scene is unknown, so no export may remove one.
+TEST(Nerf2Mesh, DamagedFoldersAreNotReplaced) {
+  const TemporaryFolder folder;
+  const fs::path n = folder.path() / "n";
+  write_nerf2mesh_example(n);
+  EXPECT_NO_THROW(refuse_foreign_content(n));
+  write_text(n / "feat0_0.jpg", "mine");
+  EXPECT_TRUE(own_nerf2mesh_files(n).empty());
+  EXPECT_THROW(refuse_foreign_content(n), FileError);
 }
 
 TEST(Nerf2Mesh, DamageIsNamed) {
