@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <regex>
+#include <sstream>
 
 #include "editor/actions/describe_action.h"
 #include "editor/actions/lit.h"
@@ -55,6 +57,16 @@ std::string table_of(const std::vector<Row>& rows) {
   return text;
 }
 
+// Whether a text is such a table, to which nobody added anything.
+bool is_table(const std::string& text) {
+  if (!text.starts_with(table_header)) return false;
+  static const std::regex row(R"(".*",\d+,\S+,\S+,\S+)");
+  std::istringstream lines(text.substr(std::string_view(table_header).size()));
+  for (std::string line; std::getline(lines, line);)
+    if (!std::regex_match(line, row)) return false;
+  return true;
+}
+
 // The files that are written. Throws FileError if one exists that this action did not write.
 void check_output(const fs::path& folder, const std::vector<std::string>& names, const SourceGuard& sources) {
   std::error_code error;
@@ -71,7 +83,7 @@ void check_output(const fs::path& folder, const std::vector<std::string>& names,
   }
   const fs::path table = folder / table_name;
   sources.check_file(table);
-  if (fs::is_symlink(table, error) || (fs::exists(table, error) && !read_file(table).starts_with(table_header)))
+  if (fs::is_symlink(table, error) || (fs::exists(table, error) && !is_table(read_file(table))))
     throw FileError(table, "exists and is not a table of this comparison, or is a link; choose another folder");
 }
 

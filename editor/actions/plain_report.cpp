@@ -226,11 +226,19 @@ std::vector<std::string> lines_of(const PlainReport& report) {
   return lines;
 }
 
+constexpr std::string_view report_keys[] = {"exact",   "width",         "all_seconds", "texels", "fitted_texels",
+                                            "seconds", "ended_by_time", "parts",       "trials", "pictures"};
+
 void check_report_path(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) == 0) return;
   const auto there = nlohmann::json::parse(read_file(path), nullptr, false);
-  if (!there.is_object() || !there.contains("exact") || !there.contains("width"))
+  bool is_report = there.is_object() && there.contains("exact") && there.contains("width");
+  // A report with keys that somebody added is theirs.
+  if (is_report)
+    for (const auto& [key, value] : there.items())
+      if (std::ranges::find(report_keys, key) == std::end(report_keys)) is_report = false;
+  if (!is_report)
     throw FileError(path, "is not an export report; name another file for the report, or remove this one");
 }
 

@@ -56,6 +56,8 @@ TEST_F(ComparePhotographs, KeepsFilesOfOthersAndTheCapture) {
   EXPECT_EQ(read_file(at("mine/photographs.csv")), "my table");
   run(compare_ + R"(, "out": "{here}/out"})");
   const std::string first = read_file(at("out/photographs.csv"));
+  write_text(at("mine/photographs.csv"), first + "my note\n");
+  expect_error(compare_ + R"(, "out": "{here}/mine"})", "is not a table of this comparison");
   std::filesystem::create_directories(at("linked"));
   std::filesystem::create_symlink(at("out/photographs.csv"), at("linked/photographs.csv"));
   expect_error(compare_ + R"(, "out": "{here}/linked"})", "or is a link");

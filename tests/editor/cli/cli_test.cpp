@@ -126,6 +126,11 @@ TEST_F(Cli, ReportsOverwriteOnlyReports) {
   EXPECT_EQ(rebake_run(plain + in("m.obj")).code, 1);
   EXPECT_EQ(read_file(in("m.obj")), "v 0 0 0\n");
   for (int twice = 0; twice < 2; ++twice) EXPECT_EQ(rebake_run(plain + in("r.json")).code, 0);
+  auto noted = nlohmann::json::parse(read_file(in("r.json")));
+  noted["note"] = "mine";
+  write_text(in("r.json"), noted.dump());
+  EXPECT_EQ(rebake_run(plain + in("r.json")).code, 1);
+  EXPECT_EQ(read_file(in("r.json")), noted.dump());
   write_text(in("s.jsonl"), R"({"op": "select", "all": true})");
   const std::string batch =
       "batch " + in("s.jsonl") + " --scenes " + in("ball") + " -o " + in("results") + " --report ";

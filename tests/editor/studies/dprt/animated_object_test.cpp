@@ -129,6 +129,13 @@ TEST(TracedFrames, NeverWriteThroughLinks) {
     EXPECT_EQ(read_file(source), "mine");
     EXPECT_GT(std::filesystem::file_size(cache), 100U);
   }
+  // A copy by hard link is read, and the other name keeps it.
+  std::filesystem::create_hard_link(cache, folder.path() / "copy");
+  const std::string copied = read_file(cache);
+  const Progress traces([](std::string_view what, double) { EXPECT_FALSE(what.starts_with("tracing")) << what; });
+  traced_frames(object, side, rays, folder.path() / "head", traces);
+  EXPECT_EQ(read_file(folder.path() / "copy"), copied);
+  EXPECT_EQ(std::filesystem::hard_link_count(cache), 1U);
 }
 
 }  // namespace
