@@ -219,20 +219,25 @@ NodePtr use_light_model(const TransferModel& model, const Scene& scene, const fs
   throw Error("the model " + why);
 }
 
-bool store_light_model(const TransferModel& model, const Scene& scene, const fs::path& out,
-                       const SourceGuard& sources) {
-  const bool uses = worth_using(model) && result_cache();
-  if (!out.empty()) {
+std::string store_light_model(const TransferModel& model, const Scene& scene, const fs::path& out,
+                              const SourceGuard& sources) {
+  // First, because training takes minutes and writing the file may fail.
+  std::string why_not;
+  if (!worth_using(model)) {
+    why_not = "it is no better than rotating the transfer";
+  } else {
     try {
-      check_light_model_output(out, sources);  // it may have appeared since
-      write_file_atomically(out, bytes_of(model), sources);
-    } catch (const std::exception&) {
-      if (uses) use_light_model(model, scene, {});  // training takes minutes
-      throw;
+      use_light_model(model, scene, {});
+    } catch (const Error& error) {
+      if (out.empty()) throw;
+      why_not = error.what();
     }
   }
-  if (uses) use_light_model(model, scene, {});
-  return uses;
+  if (!out.empty()) {
+    check_light_model_output(out, sources);  // it may have appeared since
+    write_file_atomically(out, bytes_of(model), sources);
+  }
+  return why_not;
 }
 
 bool forget_light_model(const Scene& scene, const NodePtr& node, const Progress& progress) {

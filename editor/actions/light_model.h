@@ -37,10 +37,11 @@ TransferModel read_light_model(const std::filesystem::path& path);
 /// such object or no cache, or if the cache cannot store it; FileError if `file` is not empty.
 NodePtr use_light_model(const TransferModel& model, const Scene& scene, const std::filesystem::path& file);
 
-/// Writes a trained model to `out` unless that is empty, and has drags use it if it is worth using and there is a
-/// result cache. Returns whether they do. Throws FileError; the cache has the model also if writing fails.
-bool store_light_model(const TransferModel& model, const Scene& scene, const std::filesystem::path& out,
-                       const SourceGuard& sources);
+/// Has drags use a trained model if it is worth using, and writes it to `out` unless that is empty. Returns why drags
+/// do not use it; empty: they do. Throws FileError, after which drags use it nevertheless; Error if nothing can store
+/// it.
+std::string store_light_model(const TransferModel& model, const Scene& scene, const std::filesystem::path& out,
+                              const SourceGuard& sources);
 
 /// Removes the model of a node's object from the cache. Returns whether there was one.
 bool forget_light_model(const Scene& scene, const NodePtr& node, const Progress& progress);

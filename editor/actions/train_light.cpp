@@ -105,16 +105,10 @@ void run(Session& session, const TrainLightAction& action) {
     throw FieldError("out", "is missing: name a file, because the result cache is off (REBAKE_RESULTS is empty)");
   const TransferModel model = trained_light_model(scene, node, edits, options, session.progress);
   for (const std::string& fact : facts_of(model)) session.say(fact);
-  const bool uses = store_light_model(model, scene, action.out, sources);
+  const std::string why_not = store_light_model(model, scene, action.out, sources);
   if (!action.out.empty()) session.outputs.push_back(action.out);
-  if (!worth_using(model)) {
-    session.say(
-        fmt::format("drags of \"{}\" do not use the model: it is no better than rotating the transfer", node->name));
-  } else if (uses) {
-    session.say(fmt::format("drags of \"{}\" now use the model", node->name));
-  } else {
-    session.say("drags do not use the model, because the result cache is off (REBAKE_RESULTS is empty)");
-  }
+  session.say(why_not.empty() ? fmt::format("drags of \"{}\" now use the model", node->name)
+                              : fmt::format("drags of \"{}\" do not use the model: {}", node->name, why_not));
 }
 
 REBAKE_DESCRIBE_ACTION(

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <memory>
@@ -64,7 +65,12 @@ void print_table(const std::vector<BatchResult>& results) {
 bool is_report(const std::string& text) {
   const auto is_result = [](const std::string& line) {
     const auto result = nlohmann::json::parse(line, nullptr, false);
-    return result.is_object() && result.contains("scene") && result.contains("status") && result.contains("seconds");
+    if (!result.is_object() || !result.contains("scene") || !result.contains("status") || !result.contains("seconds"))
+      return false;
+    constexpr std::string_view keys[] = {"scene", "path", "status", "seconds", "message"};
+    for (const auto& [key, value] : result.items())
+      if (std::ranges::find(keys, key) == std::end(keys)) return false;
+    return true;
   };
   std::size_t at = 0;
   for (std::size_t end = 0; (end = text.find('\n', at)) != std::string::npos; at = end + 1)

@@ -61,14 +61,13 @@ void train(const Options& options) {
   const TransferModel model = trained_light_model(scene, node, options.edits, learning, progress_bar());
   clear_progress_bar();
   say(model);
-  const bool uses = store_light_model(model, scene, out, sources);
-  if (!worth_using(model)) {
-    const std::string why = "it is no better than rotating the transfer, which drags use without a model";
-    if (out.empty()) throw Error("the model is not stored: " + why);
-    fmt::print("not stored: {}\n", why);
-  } else if (uses) {
+  const std::string why_not = store_light_model(model, scene, out, sources);
+  if (why_not.empty())
     say_stored();
-  }
+  else if (out.empty())
+    throw Error("the model is not stored: " + why_not);
+  else
+    fmt::print("not stored: {}\n", why_not);
 }
 
 void keep_model(const Options& options) {

@@ -182,9 +182,9 @@ class Journal::File {
   void mend() {
     if (!torn_) return;
     Torn torn = *torn_;
-    if (file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
     torn_.reset();
     try {
+      if (file_calls().ftruncate(descriptor_.value, static_cast<off_t>(end_)) != 0) fail();
       if (!torn.begun) append({json{{"rebake_journal", journal_version}}});
       torn.begun = true;
       if (!torn.ends_in_newline) append_text("\n");

@@ -124,9 +124,6 @@ void refuse_foreign_content(const fs::path& folder) {
         if (format.folder != nullptr &&
             (place == folder ? markers.contains(format.marker) : std::string_view(format.marker) != "scene.json"))
           found->second.merge(format.folder->own_files(place));
-    if (place == folder && found->second.empty())
-      throw FileError(folder,
-                      "has a damaged scene, and which files belong to it is unknown; choose a new or empty folder");
     return found->second.contains(file.filename().string());
   };
   if (!known && !fs::is_empty(folder)) refuse(fs::directory_iterator(folder)->path());
@@ -135,7 +132,11 @@ void refuse_foreign_content(const fs::path& folder) {
        it.increment(error)) {
     const std::string name = it->path().filename().string();
     if (it->is_symlink()) refuse(it->path());
-    if (it->is_directory() ? it.depth() > 0 || !own.contains(name) : !is_own_file(it->path())) refuse(it->path());
+    if (it->is_directory() ? it.depth() == 0 && own.contains(name) : is_own_file(it->path())) continue;
+    if (markers.contains(name) && !it->is_directory())
+      throw FileError(it->path().parent_path(),
+                      "has a damaged scene, and which files belong to it is unknown; choose a new or empty folder");
+    refuse(it->path());
   }
   if (error) throw FileError(folder, "cannot be read: " + error.message());
 }

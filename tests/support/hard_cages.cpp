@@ -99,7 +99,7 @@ std::vector<Vec3> all_hard_points(const Cage& cage) {
 std::vector<Vec3> hard_points(const Cage& cage) {
   const std::vector<Vec3> points = all_hard_points(cage);
   std::vector<Vec3> some;
-  // Primes, so that all kinds of points at all distances are included.
+  // A prime, so that all kinds of points at all distances are included; sanitizers see some of them.
   const auto step = static_cast<std::size_t>(cases(11, 1, 53));
   for (std::size_t k = 0; k < points.size(); k += step) some.push_back(points[k]);
   return some;

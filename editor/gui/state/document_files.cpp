@@ -148,6 +148,7 @@ void Project::open_project(const fs::path& file, const SourceLinks& links, bool 
         }
         path = file;
         saved_ = *read;
+        cannot_be_opened_ = false;
         imported = *read;
         settings_.remember(file.string());
         opened_();
@@ -192,6 +193,7 @@ void Project::recover(const fs::path& journal, const SourceLinks& links, bool go
         }
         path.clear();
         saved_.reset();
+        cannot_be_opened_ = false;
         imported = {};
         if (problem->empty()) return;
         messages_.fail(*problem);
@@ -241,7 +243,8 @@ void Project::save(const fs::path& file, Document::OtherProject other) {
         for (const std::string& warning : written->warnings) messages_.fail(warning);
         const auto next = std::exchange(after_save, nullptr);
         // The work is lost if the window closes now, because nothing can open the project.
-        if (!written->opens) return;
+        cannot_be_opened_ = !written->opens;
+        if (cannot_be_opened_) return;
         saved_ = *saved;
         if (next) next();
       },
@@ -344,6 +347,6 @@ void Project::run_script(const fs::path& file) {
   });
 }
 
-bool Project::unsaved() const { return !same_work(now_->scene, saved_ ? *saved_ : imported); }
+bool Project::unsaved() const { return cannot_be_opened_ || !same_work(now_->scene, saved_ ? *saved_ : imported); }
 
 }  // namespace rebake

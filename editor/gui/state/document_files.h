@@ -78,7 +78,8 @@ class Project {
   Messages& messages_;
   const std::shared_ptr<const Snapshot>& now_;
   std::function<void()> opened_;
-  std::optional<Scene> saved_;  ///< scene in the project file; nothing without a project
+  std::optional<Scene> saved_;     ///< scene in the project file; nothing without a project
+  bool cannot_be_opened_ = false;  ///< the project was saved last without a source that it needs
 };
 
 }  // namespace rebake

@@ -28,7 +28,7 @@ class TraceCache {
     // Links to other files are replaced by a copy, so that those are not written to.
     if (std::error_code error;
         fs::is_symlink(file_, error) || (fs::exists(file_, error) && fs::hard_link_count(file_, error) > 1)) {
-      const std::string bytes = fs::exists(file_, error) ? read_file(file_) : "";
+      const std::string bytes = fs::is_regular_file(file_, error) ? read_file(file_) : "";
       fs::remove(file_);
       write_file_atomically(file_, bytes, {});
     }

@@ -12,8 +12,8 @@ namespace rebake {
 bool is_baked_file_name(const std::string& name);
 
 /// Names of the files in a folder that belong to its MobileNeRF scene, or that Rebake adds there. Geometry and textures
-/// belong to it if they are read with it, since another program's file may have such a name; in a damaged folder, by
-/// their names.
+/// belong to it if they are read with it, since another program's file may have such a name. None in a folder where
+/// that is unclear.
 std::set<std::string> own_baked_files(const std::filesystem::path& folder);
 
 /// Hash of the names and contents of baked_files(). Throws FileError.

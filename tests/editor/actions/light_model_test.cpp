@@ -85,6 +85,11 @@ TEST_F(LightModel, FailedWritesAreReportedAndLoseNoModel) {
   run(R"({"op": "forget_light_model"})");
   cache_->full = true;
   expect_error(R"({"op": "use_light_model", "model": "{here}/m.light"})", "cannot be stored in the result cache");
+  said();
+  std::filesystem::remove(folder_.path() / "m.light");
+  run(train);
+  EXPECT_NE(said().find("do not use the model: the model cannot be stored"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "m.light"));
 }
 
 TEST_F(LightModel, OfAnEditedObjectIsThatOfTheObjectAsRead) {
