@@ -79,15 +79,26 @@ SavedProject write_project(const fs::path& path, const std::vector<History::Entr
       root["sources"].push_back(entry);
   }
   SavedProject saved;
+  const auto warn = [&](std::string warning) {
+    saved.opens = false;
+    saved.warnings.push_back(std::move(warning));
+  };
   for (const json& source : root["sources"]) {
     const fs::path read = source_path(folder, source.at("path"));
     const std::string trouble = source_problem(read, source.at("content"), {});
     if (trouble.empty()) continue;
-    saved.opens = false;
-    saved.warnings.push_back(
-        fmt::format("{} {}: the project cannot be opened without the original; save a scene folder to keep the "
-                    "present scene",
-                    read.string(), trouble));
+    warn(fmt::format(
+        "{} {}: the project cannot be opened without the original; save a scene folder to keep the present scene",
+        read.string(), trouble));
+  }
+  for (const History::Entry& entry : entries) {
+    const EditType& type = entry.edit.type();
+    // Missing sources are known by now.
+    const std::string trouble =
+        type.input_problem != nullptr && saved.opens ? type.input_problem(entry.edit.value()) : "";
+    if (!trouble.empty())
+      warn(fmt::format("{}; without them the project cannot be opened; save a scene folder to keep the present scene",
+                       trouble));
   }
   try {
     root["checksum"] = checksum(root);

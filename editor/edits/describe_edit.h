@@ -78,6 +78,8 @@ EditType type_of(const char* help, Describe) {
     type.source_field = T::source_field;
     if constexpr (requires(const T& one) { one.input_files(); })
       type.input_files = [](const void* edit) { return static_cast<const T*>(edit)->input_files(); };
+    if constexpr (requires(const T& one) { one.input_problem(); })
+      type.input_problem = [](const void* edit) { return static_cast<const T*>(edit)->input_problem(); };
     type.source = [](const void* edit) { return static_cast<const T*>(edit)->input(); };
     type.with_source = [](const void* edit, const EditSource& source) {
       T changed = *static_cast<const T*>(edit);

@@ -84,6 +84,9 @@ struct EditType {
   Edit (*with_source)(const void* edit, const EditSource& source);
   /// Files that the edit reads, by a function input_files(); null for edits whose source stands for all files.
   std::vector<std::filesystem::path> (*input_files)(const void* edit);
+  /// Why files that the edit reads besides its source are missing or have changed, by a function input_problem();
+  /// empty: they are unchanged. Null for edits without such files.
+  std::string (*input_problem)(const void* edit);
 };
 
 /// The EditType of an edit struct; specialised per edit.

@@ -60,6 +60,9 @@ std::vector<fs::path> files_of(const Photographs& found) {
   return files;
 }
 
+constexpr const char* masks_changed =
+    ": cameras or masks have changed since they were used; restore the original files";
+
 std::string hash_of(const Photographs& found) {
   ContentHash hash;
   for (const fs::path& file : files_of(found))
@@ -155,13 +158,22 @@ std::vector<fs::path> SelectMasks::input_files() const {
   return files;
 }
 
+std::string SelectMasks::input_problem() const {
+  try {
+    std::vector<std::string> notes;
+    return masks_content.empty() || hash_of(photographs_of(*this, notes)) == masks_content ? "" : path + masks_changed;
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
 Outcome apply(const Scene& scene, const SelectMasks& edit, const Progress& progress) {
   check(edit);
   Report report;
   const Photographs found = photographs_of(edit, report.lines);
   if ((!edit.content.empty() && hash_text(content_hash_at(edit.path)) != edit.content) ||
       (!edit.masks_content.empty() && hash_of(found) != edit.masks_content))
-    throw EditError(edit.path + ": cameras or masks have changed since they were used; restore the original files");
+    throw EditError(edit.path + masks_changed);
   for (std::string& line : report.lines) line = fmt::format("warning: {}: {}", edit.path, line);
   const std::vector<PlacedNode> targets = selectable(scene, edit.node);
   std::vector<PlacedNode> occluders = visible_objects(scene);

@@ -26,6 +26,7 @@ struct SelectMasks {
   EditSource input() const;
   void set_input(const EditSource& source);
   std::vector<std::filesystem::path> input_files() const;
+  std::string input_problem() const;
 };
 template <>
 const EditType& edit_type<SelectMasks>();

@@ -33,6 +33,9 @@ std::vector<PhotoCamera> cameras_of(const Refit& edit, std::vector<std::string>&
   return read_cameras(source_of(edit), notes);
 }
 
+constexpr const char* photographs_changed =
+    ": cameras or photographs have changed since they were used; restore the original files";
+
 std::string hash_of(const std::vector<fs::path>& files) {
   std::string all;
   for (const fs::path& file : files)
@@ -102,6 +105,16 @@ void Refit::set_input(const EditSource& source) {
 
 std::vector<fs::path> Refit::input_files() const { return files_with_cameras(path, format.name); }
 
+std::string Refit::input_problem() const {
+  try {
+    std::vector<std::string> notes;
+    const bool same = photographs.empty() || hash_of(named_files(path, cameras_of(*this, notes))) == photographs;
+    return same ? "" : path + photographs_changed;
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
 Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
   if (edit.path.empty()) throw FieldError("path", "is empty");
   if (!(std::isfinite(edit.scale) && edit.scale > 0)) throw FieldError("scale", "must be a number above 0");
@@ -111,8 +124,7 @@ Outcome apply(const Scene& scene, const Refit& edit, const Progress& progress) {
   for (std::string& line : report.lines) line = fmt::format("warning: {}: {}", edit.path, line);
   if ((!edit.content.empty() && hash_text(content_hash_at(edit.path)) != edit.content) ||
       (!edit.photographs.empty() && hash_of(named_files(edit.path, cameras)) != edit.photographs))
-    throw EditError(edit.path +
-                    ": cameras or photographs have changed since they were used; restore the original files");
+    throw EditError(edit.path + photographs_changed);
   const std::vector<FitTarget> targets = targets_of(scene, edit);
   std::vector<PlacedNode> occluders = visible_objects(scene);
   for (const FitTarget& target : targets)

@@ -25,6 +25,7 @@ struct Refit {
   EditSource input() const;
   void set_input(const EditSource& source);
   std::vector<std::filesystem::path> input_files() const;
+  std::string input_problem() const;
 };
 template <>
 const EditType& edit_type<Refit>();

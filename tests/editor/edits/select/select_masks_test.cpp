@@ -188,8 +188,12 @@ TEST_F(SelectMasksTest, ReplayNoticesChangedMasks) {
   const Document opened = Document::open(path("a.rebake"), {}, {});
   EXPECT_EQ(*find(opened.scene(), "other")->selection, *find(document_.scene(), "other")->selection);
   EXPECT_THROW(document_.sources().check_file(path("shoot/masks/photo3.png")), FileError) << "masks are protected";
+  EXPECT_TRUE(document_.save(path("a.rebake"), {}).opens);
   write_masks([](int, std::uint8_t label) { return label == 1 ? 255 : 0; });
   EXPECT_THROW(Document::open(path("a.rebake"), {}, {}), Error);
+  EXPECT_FALSE(document_.save(path("a.rebake"), {}).opens);
+  fs::remove_all(path("shoot/masks"));
+  EXPECT_FALSE(document_.save(path("a.rebake"), {}).opens);
 }
 
 TEST_F(SelectMasksTest, MovedMasksAreFoundBesideTheMovedCapture) {

@@ -53,6 +53,7 @@ TEST_F(RefitTest, ProjectsNoticeOtherPhotographs) {
   fs::remove(at("cap/a.png"));
   write_picture(other, at("cap/a.png"), {});
   EXPECT_THROW(Document::open(at("p.rebake"), {}, {}), Error);
+  EXPECT_FALSE(session.document.save(at("p.rebake")).opens);
   // Outputs do not replace photographs that undo and projects read again.
   expect_error(R"({"op": "render", "out": "{here}/cap/b.png", "width": 8, "height": 8})", "a file that this run reads");
 }
