@@ -79,11 +79,10 @@ void recover(Recovery options) {
   Document::Recovered recovered = Document::recover(options.journal, links_of(options.sources), progress_bar());
   // An empty project would block the next attempt.
   const bool nothing = recovered.edits == 0;
-  if (!nothing)
-    for (const std::string& warning :
-         recovered.document.save(options.out, progress_bar(), other_project(options)).warnings)
-      print_message("warning: " + warning);
+  SavedProject saved;
+  if (!nothing) saved = recovered.document.save(options.out, progress_bar(), other_project(options));
   clear_progress_bar();
+  for (const std::string& warning : saved.warnings) print_message("warning: " + warning);
   const std::size_t undone = recovered.document.history().redo_count();
   if (nothing && recovered.lost.empty())
     throw FileError(options.journal,
@@ -106,8 +105,8 @@ void recover(Recovery options) {
     print_message("note: the journal's first line is damaged; all edits after it are intact");
   if (recovered.torn) print_message("note: the last edit is lost: the program ended while it was written");
   if (recovered.lost.empty()) {
-    // The project is on the disk now.
-    if (options.keep || undone > 0 || recovered.skipped_undone > 0) return;
+    // The project is on the disk now, and can be opened unless a source changed meanwhile.
+    if (!saved.opens || options.keep || undone > 0 || recovered.skipped_undone > 0) return;
     if (recovered.journal)
       recovered.journal->discard();
     else if (recovered.document.keeps_journal())
